@@ -20,7 +20,6 @@ PROGRAM_SECONDS = 60         # processor time, and time of a conversion
 PROGRAM_BYTES = 2**30
 CHUNK_BYTES = 2**18
 MAX_NAME_BYTES = 150         # without the extension; file systems allow 255
-MAX_SETTINGS_BYTES = 2**16
 MAX_JOINTS = 300
 JOINT = re.compile(r"([^\0-\x1f\x7f:,]{1,64}):([0-9]{0,3})")
 MODEL_FILE = "skeleton of the model"  # no visitor's file has a name with a blank
@@ -198,60 +197,13 @@ def packed(files, stem):
     return archive
 
 
-def settings_of(line):
-    """Returns the settings in the first line of a body, else raises Refused."""
-    try:
-        settings = json.loads(line)
-    except (ValueError, RecursionError):
-        settings = None
-    if not isinstance(settings, dict):
-        raise Refused(400, f"body: expected a first line of at most {MAX_SETTINGS_BYTES} bytes with a "
-                           f"JSON object, got {shown(line.decode(errors='replace'))}")
-    return settings
-
-
-def named_files(settings):
-    """Returns name and size of each of the files that follow the settings, else raises Refused."""
-    files = settings.get("files")
-    if not isinstance(files, list):
-        raise Refused(400, "files: expected a list of objects with name and bytes, got "
-                           f"{shown(json.dumps(files)) if files is not None else 'none'}")
-    named = []
-    for index, file in enumerate(files):
-        at = f"files[{index}]"
-        if not isinstance(file, dict):
-            raise Refused(400, f"{at}: expected an object with name and bytes, got "
-                               f"{shown(json.dumps(file))}")
-        for field in ("name", "bytes"):
-            if field not in file:
-                raise Refused(400, f"{at}.{field}: expected one, got none")
-        size = file["bytes"]
-        if type(size) is not int or size < 0:  # True is an int too
-            raise Refused(400, f"{at}.bytes: expected a whole number of 0 or more, got "
-                               f"{shown(json.dumps(size))}")
-        named.append((file_name(file["name"]), size))
-    return named
-
-
-def take_apart(body, folder):
-    """Splits a body into the settings in its first line and the files that follow. The settings
-    have the names and sizes of the files: {"files": [{"name": NAME, "bytes": COUNT}, ...]}. Writes
-    each file to a separate folder. Returns the settings and the files' paths, relative to
-    `folder`."""
-    with open(body, "rb") as source:
-        settings = settings_of(source.readline(MAX_SETTINGS_BYTES))
-        wanted = named_files(settings)
-        paths = []
-        for index, (name, size) in enumerate(wanted[:2]):
-            path = folder / str(index) / name
-            path.parent.mkdir()
-            with open(path, "wb") as out:
-                out.write(source.read(size))
-            if path.stat().st_size != size:
-                raise Refused(400, f"files[{index}].bytes: expected at most the bytes that follow, "
-                                   f"got {size}")
-            paths.append(str(path.relative_to(folder)))
-    return settings, paths
+def take_apart(body, pair, rig):
+    """Splits a body into its first line, a pair as JSON, and the rig's file that follows."""
+    with open(body, "rb") as source, open(pair, "wb") as first, open(rig, "wb") as second:
+        while (piece := source.readline(CHUNK_BYTES)) and not piece.endswith(b"\n"):
+            first.write(piece)
+        first.write(piece)
+        shutil.copyfileobj(source, second)
 
 
 async def send_file(request, path, kind, before=b"", after=b"", headers=()):

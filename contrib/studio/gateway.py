@@ -28,7 +28,6 @@ import grpc_web  # noqa: E402
 import live_socket  # noqa: E402
 import serving  # noqa: E402
 import uploads  # noqa: E402
-import visitors  # noqa: E402
 from aiohttp import web  # noqa: E402
 
 SAMPLES = HERE.parents[1] / "samples"
@@ -95,18 +94,18 @@ class Gateway:
             return await send_download(request, file)
 
     async def write_on_rig(self, request):
-        """Writes the follower of a pair on a rig. The body is a line of JSON with settings, the pair
-        in "duet-motion" JSON and the rig's file (conversions.take_apart)."""
+        """Writes the follower of a pair on a rig. The body is a line with the pair in "duet-motion"
+        JSON, and the rig's file. The query has the names, the format and settings for the rig's
+        file."""
+        settings = {name: request.query.getall(name) for name in request.query}
+        stem, rig = (conversions.file_name(settings.pop(name, [""])[0]) for name in ("name", "rig"))
+        kind = conversions.format_of(settings.pop("format", [""])[0])
         async with self._received(request, "body") as folder:
-            settings, paths = await asyncio.to_thread(conversions.take_apart, folder / "body",
-                                                      folder)
-            settings.pop("files")
-            stem = conversions.file_name(settings.pop("name", "reaction"))
-            kind = conversions.format_of(settings.pop("format", ""))
-            if len(paths) != 2:
-                raise serving.Refused(400, "files: expected the pair's and the rig's, got "
-                                           f"{len(paths)}")
-            file = await self._program.write_on_rig(folder, *paths, kind, stem, settings)
+            (folder / "rig").mkdir()
+            await asyncio.to_thread(conversions.take_apart, folder / "body", folder / "pair.json",
+                                    folder / "rig" / rig)
+            file = await self._program.write_on_rig(folder, "pair.json", f"rig/{rig}", kind, stem,
+                                                    settings)
             return await send_download(request, file)
 
     @contextlib.asynccontextmanager
@@ -134,7 +133,7 @@ async def send_download(request, file):
 async def run(options):
     tls = duet.TlsOptions.from_files(ca=options.tls_ca) if options.tls_ca else None
     program = conversions.Duet()
-    proxies = visitors.networks_of(options.proxy)
+    proxies = live_socket.networks_of(options.proxy)
     if options.sessions_per_address < 1:
         raise ValueError("--sessions-per-address: expected 1 or more, got "
                          f"{options.sessions_per_address}")

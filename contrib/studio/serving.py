@@ -2,20 +2,13 @@
 errors as JSON. aiohttp implements HTTP."""
 
 import asyncio
-import contextlib
-import errno
 import json
 import logging
 import signal
-import socket
 
 from aiohttp import http_exceptions, web
 
-MAX_CONNECTIONS = 512
 BACKLOG = 128  # connections that wait to be accepted
-# The system has no room for another connection.
-EXHAUSTED = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
-EXHAUSTED_SECONDS = 1
 # Timeouts in seconds. A whole request includes its answer: the longest gRPC call and its reader.
 HEADER_SECONDS = 10
 IDLE_SECONDS = 30
@@ -66,7 +59,6 @@ class Connection(web.RequestHandler):
     def __init__(self, *arguments, **options):
         super().__init__(*arguments, **options)
         self.answering = None  # the task that answers a request
-        self.lost = asyncio.Event()
         self._waiting_for_header = None
 
     def connection_made(self, transport):
@@ -80,7 +72,6 @@ class Connection(web.RequestHandler):
         if self.answering:
             self.answering.cancel()
         super().connection_lost(exc)
-        self.lost.set()
 
     def data_received(self, data):
         try:
@@ -126,23 +117,9 @@ class Server(web.Server):
                          lingering_time=2, logger=LOG)
         self._routes = routes
         self._hosts = {name.lower() for name in hosts}
-        self._making_room = asyncio.Lock()
 
     def __call__(self):
         return Connection(self, loop=self._loop, **self._kwargs)
-
-    async def make_room(self):
-        """Returns whether there is room for another connection. If there are too many, cuts off the
-        oldest one without a request, and waits until it is gone: a burst must not exceed the limit."""
-        async with self._making_room:
-            while len(self._connections) >= MAX_CONNECTIONS:
-                idle = next((connection for connection in self._connections
-                             if not connection.answering), None)
-                if idle is None:
-                    return False
-                idle.transport.abort()
-                await idle.lost.wait()
-            return True
 
     async def _handle(self, request):
         request.protocol.begin()
@@ -265,41 +242,10 @@ async def serve(server, listen, started, stopping):
     stop = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stop.set)
-    with contextlib.ExitStack() as stack:
-        listeners = [stack.enter_context(listener)
-                     for listener in listen_at(host.strip("[]") or None, int(port))]
-        accepting = [asyncio.ensure_future(accept(server, listener)) for listener in listeners]
-        started(listeners[0].getsockname())
-        await stop.wait()
-        for task in accepting:
-            task.cancel()
-        await asyncio.wait(accepting)
+    listening = await asyncio.get_running_loop().create_server(
+        server, host.strip("[]") or None, int(port), backlog=BACKLOG)
+    started(listening.sockets[0].getsockname())
+    await stop.wait()
+    listening.close()
     await stopping()
     await server.shutdown(SHUTDOWN_SECONDS)
-
-
-def listen_at(host, port):
-    """Yields a listening socket for each address of a host; None: of this machine."""
-    places = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
-    for family, _, _, _, address in dict.fromkeys(places):
-        listener = socket.create_server(address, family=family, backlog=BACKLOG)
-        listener.setblocking(False)
-        yield listener
-
-
-async def accept(server, listener):
-    """Accepts connections, one after the other, so that the limit holds at any time."""
-    loop = asyncio.get_running_loop()
-    while True:
-        try:
-            connection, _ = await loop.sock_accept(listener)
-        except OSError as error:
-            LOG.error("cannot accept a connection: %s", error)
-            if error.errno in EXHAUSTED:
-                await asyncio.sleep(EXHAUSTED_SECONDS)
-            continue
-        if not await server.make_room():
-            connection.close()
-            continue
-        with contextlib.suppress(OSError):  # the visitor has left
-            await loop.connect_accepted_socket(server, connection)

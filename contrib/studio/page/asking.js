@@ -26,7 +26,7 @@ async function ask(leader, seed, kept, signal, show) {
   const positions = new Float32Array(motion.positions.length);
   if (kept) positions.set(kept.positions.subarray(0, kept.frames * values));
   const take = {
-    positions, leader: leader.name, settings: JSON.stringify({...settings, seed}),
+    positions, leader: leader.name, settings: addressOf({...settings, seed}),
     model: state.model.name, version: state.model.version, samples: Boolean(state.model.samples),
     kept: kept?.frames ?? 0,
   };

@@ -67,29 +67,23 @@ async function download(kind) {
   await save(await fetchFrom(`/write?${query}`, {method: 'POST', body: pairJson()}));
 }
 
-// The settings for the rig's file: for the leader's own, those for reading it.
+// The settings for the rig's file as parts of a query: for the leader's own, those for reading it.
 function rigSettings() {
-  if (state.rig) return {joint_map: lines(settings.rig_joint_map)};
-  const chosen = {joint_map: lines(settings.joint_map)};
-  for (const name of ['side', 'up_axis', 'metres_per_unit']) {
-    if (settings[name] !== '') chosen[name] = settings[name];
-  }
-  return chosen;
+  const joints = lines(state.rig ? settings.rig_joint_map : settings.joint_map);
+  const names = state.rig ? ['resample'] : ['side', 'up_axis', 'metres_per_unit', 'resample'];
+  return [...joints.map((joint) => ['joint_map', joint]),
+          ...names.map((name) => [name, settings[name]]).filter(([, value]) => value !== '')];
 }
 
 // The shown follower on a rig: the leader's own or another file's.
 async function downloadOnRig() {
   const {name, bytes} = state.rig ?? state.leader;
-  const pair = new Blob([pairJson()]);
-  const head = {
-    ...rigSettings(), format: /\.bvh$/i.test(name) ? 'bvh' : 'glb',
-    name: downloadName(state.takes[state.chosen]),
-    ...(settings.resample !== '' && {resample: settings.resample}),
-    files: [{name: 'pair.json', bytes: pair.size}, {name: safeName(name), bytes: bytes.byteLength}],
-  };
+  const query = new URLSearchParams([
+    ...rigSettings(), ['format', /\.bvh$/i.test(name) ? 'bvh' : 'glb'], ['rig', safeName(name)],
+    ['name', downloadName(state.takes[state.chosen])]]);
   tell('Writing the follower on the rig …');
-  await save(await fetchFrom('/write_on_rig', {
-    method: 'POST', body: new Blob([JSON.stringify(head), '\n', pair, bytes])}));
+  await save(await fetchFrom(`/write_on_rig?${query}`, {
+    method: 'POST', body: new Blob([pairJson(), '\n', bytes])}));
 }
 
 async function save(response) {

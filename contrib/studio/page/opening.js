@@ -26,7 +26,7 @@ async function openSession(text) {
   const session = readSession(text);
   const before = UndoHistory.take('');
   try {
-    Object.assign(settings, structuredClone(DEFAULTS), session.settings,
+    Object.assign(settings, session.settings,
                   {leader: session.leader.name, file: fingerprint(session.leader.bytes)});
     const known = modelNamed(settings.model);
     if (!known) settings.model = nameOf(state.models.find((model) => model.is_default));
@@ -51,7 +51,7 @@ async function openSession(text) {
 // askedFor() of the settings with which an answer was requested.
 function askedForIn(answer) {
   const now = structuredClone(settings);
-  Object.assign(settings, structuredClone(DEFAULTS), JSON.parse(answer.settings));
+  takeAddress(answer.settings);
   const asked = askedFor();
   Object.assign(settings, now);
   return asked;

@@ -95,7 +95,7 @@ function changed(what) {
 function isStale() {
   const take = state.takes[state.chosen];
   if (!take) return false;
-  const isOther = settings.seed === '' ? JSON.parse(take.settings).seed !== ''
+  const isOther = settings.seed === '' ? settingsAt(take.settings).seed !== ''
                                        : !seedsOf(state.takes).includes(settings.seed);
   return state.asked !== askedFor() || (state.model.samples && isOther);
 }
@@ -363,11 +363,7 @@ async function restore() {
       return;
     }
     const {leader, takes, chosen, asked, rig = null} = kept;
-    const isReload = Boolean(kept.history) && kept.tab === tabName();
-    if (isReload) undoHistory.resume(kept.history);
-    const isSame = isReload && addressOf(kept.history.now.settings) === addressOf(settings);
-    if (isSame) Object.assign(settings, structuredClone(kept.history.now.settings));
-    const isAnswered = isSame || asked === askedFor();
+    const isAnswered = asked === askedFor() || kept.address === addressOf(settings);
     Object.assign(state, isAnswered ? {leader, takes, chosen, asked, rig} : {leader, rig});
     showLeader();
     showRig();

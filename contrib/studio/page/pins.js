@@ -64,3 +64,247 @@ function describePin(take, {joint, frame, position}) {
   if (!met) return '';
   return met.metres < 0.01 ? 'reached' : `${Math.round(100 * met.metres)} cm away`;
 }
+
+// Handles of the follower's joints over the scene, and the list of pins. Dragging a joint pins it in
+// the frame on display. Arrow keys move a pin, with Shift away from the camera and towards it; Delete
+// removes it.
+const PIN_STEP_METRES = 0.05;
+const HANDLE_PIXELS = 7;
+
+const jointText = (joint) => joint.replaceAll('_', ' ');
+
+class PinHandles {
+  // `onChange(what)` is called after each change, `onEnd()` after each drag.
+  constructor(svg, list, onChange, onEnd) {
+    Object.assign(this, {svg, list, onChange, onEnd, handles: new Map(), rows: [], held: null});
+    svg.addEventListener('keydown', (event) => this.key(event));
+  }
+
+  get isShown() { return !this.svg.hasAttribute('hidden'); }
+  get take() { return state.takes[state.chosen]; }
+
+  // Where the follower's joint is in a frame, or null without an answer.
+  placeOf(joint, frame) {
+    const {motion} = state.leader ?? {};
+    const index = motion?.joint_names.indexOf(joint) ?? -1;
+    if (!this.take || index < 0 || frame >= motion.frames) return null;
+    return jointAt(this.take.positions, frame * motion.joint_names.length + index);
+  }
+
+  // Where a handle is: at the pin, or at the joint.
+  handlePlace(joint) {
+    return pinAt(settings, joint, frameNow())?.position ?? this.placeOf(joint, frameNow());
+  }
+
+  // Pins a joint in the frame on display.
+  pin(joint, position) {
+    setPin(settings, joint, frameNow(), position);
+    this.onChange(`pin of ${jointText(joint)}`);
+  }
+
+  remove(joint, frame) {
+    removePin(settings, joint, frame);
+    this.onChange(`remove pin of ${jointText(joint)}`);
+    this.onEnd();
+  }
+
+  // ---- The handles.
+
+  handleOf(joint) {
+    let handle = this.handles.get(joint);
+    if (handle) return handle;
+    const group = svgItem('g', {});
+    handle = {group, way: svgItem('line', {class: 'way'}),
+              grip: svgItem('circle', {class: 'joint', r: HANDLE_PIXELS, tabindex: 0, role: 'button'})};
+    group.append(handle.way, handle.grip);
+    this.svg.append(group);
+    this.handles.set(joint, handle);
+    handle.grip.dataset.joint = joint;
+    this.connect(handle.grip, joint);
+    return handle;
+  }
+
+  at(event, place) {
+    const box = this.svg.getBoundingClientRect();
+    return theatre.pointAt(event.clientX - box.left, event.clientY - box.top, place);
+  }
+
+  connect(grip, joint) {
+    grip.addEventListener('pointerdown', (event) => {
+      const place = this.handlePlace(joint);
+      if (!place || event.button !== 0) return;
+      if (theatre.player.playing) theatre.pause();
+      const at = this.at(event, place);
+      this.held = {joint, place, off: place.map((value, i) => value - at[i])};
+      grip.setPointerCapture(event.pointerId);
+      grip.focus();
+      event.preventDefault();
+      event.stopPropagation();
+    });
+    grip.addEventListener('pointermove', (event) => {
+      if (this.held?.joint !== joint) return;
+      const at = this.at(event, this.held.place);
+      this.pin(joint, at.map((value, i) => value + this.held.off[i]));
+    });
+    for (const kind of ['pointerup', 'pointercancel']) {
+      grip.addEventListener(kind, () => {
+        if (this.held) this.onEnd();
+        this.held = null;
+      });
+    }
+  }
+
+  key(event) {
+    const {joint} = event.target.dataset;
+    if (!joint) return;
+    const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+    const way = arrows[event.key];
+    if (event.key === 'Delete' || event.key === 'Backspace') this.remove(joint, frameNow());
+    else if (way) this.step(joint, way, event.shiftKey);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  step(joint, [right, up], isDeep) {
+    const place = this.handlePlace(joint);
+    if (!place) return;
+    const [toRight, upwards, away] = viewAxes(place);
+    const axis = isDeep ? away : toRight;
+    const [a, b] = isDeep ? [up, 0] : [right, up];
+    this.pin(joint, place.map((value, i) => value + PIN_STEP_METRES * (a * axis[i] + b * upwards[i])));
+    this.onEnd();
+  }
+
+  draw() {
+    this.drawList();
+    if (!this.isShown || !theatre.player) return;
+    const frame = frameNow();
+    for (const [joint, handle] of this.handles) {
+      if (!this.placeOf(joint, frame)) handle.group.setAttribute('hidden', '');
+    }
+    if (!this.take) return;
+    for (const joint of state.model.joint_names) {
+      const place = this.placeOf(joint, frame);
+      if (place) this.drawHandle(this.handleOf(joint), joint, frame, place);
+    }
+  }
+
+  drawHandle(handle, joint, frame, place) {
+    const pin = pinAt(settings, joint, frame);
+    const [x, y, depth] = theatre.project(...(pin?.position ?? place));
+    const [fromX, fromY] = theatre.project(...place);
+    handle.group.toggleAttribute('hidden', depth > 1);
+    handle.group.setAttribute('class', pin ? 'pinned' : '');
+    handle.grip.setAttribute('cx', x);
+    handle.grip.setAttribute('cy', y);
+    handle.grip.setAttribute('aria-label', `${jointText(joint)}: arrow keys ${
+        pin ? 'move its pin' : 'pin it in this frame'}`);
+    for (const [name, value] of [['x1', fromX], ['y1', fromY], ['x2', x], ['y2', y]]) {
+      handle.way.setAttribute(name, value);
+    }
+  }
+
+  // ---- The list.
+
+  addRow() {
+    const row = document.createElement('li');
+    const go = Object.assign(document.createElement('button'), {type: 'button', className: 'pin-name'});
+    const field = (text, properties) => {
+      const label = Object.assign(document.createElement('label'), {textContent: text});
+      const input = Object.assign(document.createElement('input'), {type: 'number', ...properties});
+      label.append(input);
+      return [label, input];
+    };
+    const [frameLabel, frame] = field('frame ', {min: 0, step: 1});
+    const [softLabel, softness] = field('softness ', {min: 0, max: 1, step: 0.05});
+    const remains = document.createElement('output');
+    const drop = Object.assign(document.createElement('button'), {type: 'button', textContent: 'Delete'});
+    row.append(go, frameLabel, softLabel, remains, drop);
+    const index = this.rows.length;
+    const pin = () => settings.pins[index];
+    const change = (input, name) => {
+      if (input.value === '' || !input.checkValidity()) return;
+      if (!changePin(settings, index, {[name]: Number(input.value)})) {
+        tell(`frame: expected one in which ${jointText(pin().joint)} has no pin, got ${input.value}`, true);
+        return;
+      }
+      this.onChange(`${name} of a pin`);
+    };
+    go.addEventListener('click', () => this.goTo(pin()));
+    frame.addEventListener('change', () => change(frame, 'frame'));
+    softness.addEventListener('change', () => change(softness, 'softness'));
+    drop.addEventListener('click', () => this.remove(pin().joint, pin().frame));
+    this.rows.push({row, go, frame, softness, remains});
+    this.list.append(row);
+  }
+
+  goTo({joint, frame}) {
+    showPins(true);
+    seekAll(frame);
+    theatre.draw();
+    this.draw();
+    this.handles.get(joint)?.grip.focus({preventScroll: true});
+  }
+
+  drawList() {
+    while (this.rows.length > settings.pins.length) this.rows.pop().row.remove();
+    while (this.rows.length < settings.pins.length) this.addRow();
+    const show = (input, value) => {
+      if (document.activeElement !== input) input.value = value;
+    };
+    settings.pins.forEach((pin, i) => {
+      const {go, frame, softness, remains} = this.rows[i];
+      go.textContent = jointText(pin.joint);
+      frame.max = (state.leader?.motion.frames ?? 1) - 1;
+      show(frame, pin.frame);
+      show(softness, pin.softness);
+      remains.value = describePin(this.take, pin);
+    });
+  }
+}
+
+// The directions to the right, upwards and away from the camera at a place, of length 1.
+function viewAxes(place) {
+  const [x, y] = theatre.project(...place);
+  const axis = (dx, dy) => {
+    const at = theatre.pointAt(x + dx, y + dy, place);
+    const way = at.map((value, i) => value - place[i]);
+    const length = Math.hypot(...way);
+    return way.map((value) => value / length);
+  };
+  const [right, up] = [axis(16, 0), axis(0, -16)];
+  return [right, up, [up[1] * right[2] - up[2] * right[1], up[2] * right[0] - up[0] * right[2],
+                      up[0] * right[1] - up[1] * right[0]]];
+}
+
+// Shows or hides the handles.
+function showPins(shown) {
+  element('pin-handles').toggleAttribute('hidden', !shown);
+  element('pin').setAttribute('aria-pressed', shown);
+  if (!shown) return;
+  placeStart(false);
+  element('pins').open = true;
+  if (theatre.player?.playing) theatre.pause();
+  pinHandles.draw();
+}
+
+function connectPins() {
+  element('pin').addEventListener('click', () => {
+    showPins(!pinHandles.isShown);
+    if (pinHandles.isShown) element('pin-handles').querySelector('.joint')?.focus({preventScroll: true});
+  });
+  element('pin-add').addEventListener('click', () => {
+    const joint = element('pin-joint').value;
+    const place = pinHandles.handlePlace(joint);
+    if (!place) return;
+    showPins(true);
+    pinHandles.pin(joint, place);
+    pinHandles.onEnd();
+    pinHandles.goTo(pinAt(settings, joint, frameNow()));
+  });
+  element('pins-clear').addEventListener('click', () => {
+    settings.pins = [];
+    changed('remove all pins');
+  });
+}

@@ -1,9 +1,11 @@
 'use strict';
-// The follower between the frames that have arrived, and the recording of both people.
+// The follower between the frames that have arrived, the recording of both people, and how fast answers come.
 
 const SETTLE_SECONDS = 0.08;   // in which a plan that was shown gives way to the final frames
 const ARRIVE_SECONDS = 0.4;    // as SETTLE_SECONDS, from a pose that nobody has synthesised
 const RECORDED_FRAMES = 900;
+const MEASURED_ANSWERS = 180;
+const SHOW_MS = 500;           // between two changes of the figures
 
 // Shows the follower at any time, counted in frames. Frames that are not final yet come from the
 // newest plan.
@@ -82,5 +84,30 @@ class Recording {
     return JSON.stringify({format: 'duet-motion', version: 1, unit: 'metres', up_axis: 'y-up',
                            joint_names: joints, frame_rate_hz: frameRate, leader: nest(0),
                            follower: nest(1)});
+  }
+}
+
+// The times from the leader's frames to their answers, in words.
+class Latencies {
+  constructor(figures) {
+    Object.assign(this, {figures, times: [], counts: {skipped: 0, resumed: 0}, shown: 0});
+  }
+
+  add(ms) {
+    if (Number.isFinite(ms)) this.times.push(ms);
+    if (this.times.length > MEASURED_ANSWERS) this.times.shift();
+  }
+
+  note(kind, count = 1) { this.counts[kind] += count; }
+
+  show(now) {
+    if (now - this.shown < SHOW_MS || !this.times.length) return;
+    this.shown = now;
+    const sorted = [...this.times].sort((a, b) => a - b);
+    const within = (share) => sorted[Math.floor(share * (sorted.length - 1))].toFixed(0);
+    const {skipped, resumed} = this.counts;
+    const text = [`Half within ${within(0.5)} ms`, `99 % within ${within(0.99)} ms`, `${skipped} frames skipped`];
+    if (resumed) text.push(`resumed ${resumed} ${resumed === 1 ? 'time' : 'times'}`);
+    this.figures.textContent = `${text.join(' · ')}.`;
   }
 }

@@ -73,7 +73,6 @@ function readNumber(text, least, most, otherwise) {
 // Replaces all settings by those of an address.
 function takeAddress(hash) {
   Object.assign(settings, structuredClone(DEFAULTS));
-  const keyframes = [];
   for (const part of hash.replace(/^#/, '').split('&')) {
     const equals = part.indexOf('=');
     if (equals < 0) continue;
@@ -84,21 +83,17 @@ function takeAddress(hash) {
     } catch {
       continue;  // a truncated link
     }
-    if (name === 'key') keyframes.push(text.split(';'));
-    else takeSetting(name, text);
+    takeSetting(name, text);
   }
-  takeKeyframes(keyframes);
 }
 
-// The key frames of older links: weights of all classes in a frame.
-function takeKeyframes(keyframes) {
-  const keys = keyframes.map(([frame, text]) => [frame === '' ? -1 : Number(frame),
-                                                 readWeights(text ?? '')])
-      .filter(([frame]) => Number.isSafeInteger(frame) && frame >= 0);
-  const names = new Set(keys.flatMap(([, weights]) => Object.keys(weights)));
-  for (const [frame, weights] of keys) {
-    for (const name of names) setPoint(settings, name, frame, weights[name] ?? 0);
-  }
+// The settings of an address. Those of the page do not change.
+function settingsAt(hash) {
+  const now = structuredClone(settings);
+  takeAddress(hash);
+  const found = structuredClone(settings);
+  Object.assign(settings, now);
+  return found;
 }
 
 function takeSetting(name, text) {
@@ -214,7 +209,7 @@ function safeName(name) {
 function downloadName(take) {
   const weights = (set) => Object.entries(set).filter(([, weight]) => weight !== 0)
       .map(([name, weight]) => `${name}${Number(weight.toFixed(2))}`);
-  const all = JSON.parse(take.settings);
+  const all = settingsAt(take.settings);
   const {labels, curves, variety, candidates} = all;
   const names = Object.keys({...labels, ...curves});
   const reaction = isCurved(all)

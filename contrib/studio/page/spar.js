@@ -18,8 +18,8 @@ const KEYS = {ArrowUp: 'forward', ArrowDown: 'back', ArrowLeft: 'left', ArrowRig
 
 const spar = {
   models: [], samples: [], model: null, body: null, leader: null, choreography: null,
-  metronome: null, session: null, playback: new Playback(), recording: new Recording(),
-  strip: new Strip(element('strip'), element('figures')), weights: {}, held: new Set(),
+  session: null, playback: new Playback(), recording: new Recording(),
+  latencies: new Latencies(element('figures')), weights: {}, held: new Set(),
   elapsed: 0,      // seconds since the last frame was sent
   poses: [],       // the leader's last frames, for the recording: [index, pose]
   lates: [],       // [time, frames] by which answers were late
@@ -71,7 +71,7 @@ function connect() {
       root.dataset.session = name;
       if (name === 'open') {
         tellAway('');
-        if (spar.wasAway) spar.strip.note('resumed');
+        if (spar.wasAway) spar.latencies.note('resumed');
         spar.wasAway = false;
       } else if (name === 'away') {
         spar.wasAway = true;
@@ -81,7 +81,7 @@ function connect() {
       }
     },
     notice(kind, count) {
-      if (kind === NOTICE.skipped) spar.strip.note('skipped', count);
+      if (kind === NOTICE.skipped) spar.latencies.note('skipped', count);
     },
     frames: takeFrames,
   };
@@ -96,9 +96,9 @@ function connect() {
 const frameNow = () => spar.session.leader.end - 1 + spar.elapsed * FRAME_RATE;
 
 function takeFrames(part) {
-  const {session, strip} = spar;
+  const {session, latencies} = spar;
   spar.playback.take(session.follower, part);
-  strip.add(1000 * part.latency);
+  latencies.add(1000 * part.latency);
   spar.lates.push([performance.now(), frameNow() - (part.first + part.poses.length - 1)]);
   part.poses.forEach((pose, i) => {
     while (spar.poses.length && spar.poses[0][0] < part.first + i) spar.poses.shift();
@@ -147,7 +147,6 @@ async function chooseModel(model) {
   showStage();
   showSliders(model.interaction_classes);
   makeMoves();
-  showMusic();
   element('help').textContent = helpFor(moves);
   setWeights({});
   connect();
@@ -225,23 +224,6 @@ function throwMove(index) {
   showMoves();
 }
 
-function showMusic() {
-  const {isDance, beats} = spar.choreography;
-  element('beat').hidden = !isDance;
-  if (!isDance) {
-    if (spar.metronome?.on) spar.metronome.toggle();
-    spar.metronome = null;
-    return;
-  }
-  spar.metronome = new Metronome({bpm: DANCE_BPM, offset: 0}, beats);
-  setTempo();
-}
-
-function setTempo() {
-  spar.leader.tempo = Number(element('tempo').value);
-  element('bpm').textContent = `${Math.round(DANCE_BPM * spar.leader.tempo)} BPM`;
-}
-
 // Time.
 
 function advance(seconds) {
@@ -308,8 +290,7 @@ function tick(now) {
   showFollower(seconds);
   moveCamera(seconds);
   watchSpeed(seconds);
-  spar.metronome?.update();
-  spar.strip.draw(now);
+  spar.latencies.show(now);
 }
 
 // Keys, mouse, touch.
@@ -344,8 +325,6 @@ function connectKeys() {
       throwMove(Number(event.key) - 1);
     } else if (event.key === 'r') {
       element('again').click();
-    } else if (event.key === 'b' && spar.metronome?.possible) {
-      spar.metronome.toggle();
     }
   });
   window.addEventListener('keyup', ({key}) => {
@@ -419,8 +398,6 @@ function connectControls() {
   element('model').addEventListener('change', attempt(
       () => chooseModel(spar.models.find((model) => nameOf(model) === element('model').value))));
   element('delay').addEventListener('change', connect);
-  element('tempo').addEventListener('input', setTempo);
-  element('metronome').addEventListener('click', () => spar.metronome?.toggle());
   for (const button of element('records').children) {
     button.addEventListener('click', attempt(() => record(button.dataset.format)));
   }

@@ -1,19 +1,8 @@
 'use strict';
-// Stores the visitor's leader, the answers and the undo history in the browser (IndexedDB), so that a
-// reload loses nothing. The gateway stores no files.
+// Stores the visitor's leader and the answers in the browser (IndexedDB), so that a reload keeps them. The
+// gateway stores no files.
 const STORE = 'work';
-const MAX_KEPT_BYTES = 2 ** 26;  // of the undo history
 const KEEP_SECONDS = 0.5;
-
-// Identifies this tab over reloads. Another tab's work has the same leader, but not its history.
-function tabName() {
-  try {
-    sessionStorage.duetTab ??= Math.random().toString(36).slice(2);
-    return sessionStorage.duetTab;
-  } catch {
-    return '';  // the browser stores nothing
-  }
-}
 
 let database = null;  // stays open: a page that is left has no time to open it
 
@@ -46,9 +35,8 @@ async function inStore(mode, act) {
 async function keepWork() {
   const {leader, takes, chosen, asked, rig} = state;
   try {
-    // Equal parts of the work and of the history are stored once, because they are the same objects.
-    const work = {leader, takes, chosen, asked, rig, tab: tabName(), history: undoHistory.kept(MAX_KEPT_BYTES)};
-    await inStore('readwrite', (store) => store.put(work, 'current'));
+    await inStore('readwrite', (store) => store.put(
+        {leader, takes, chosen, asked, rig, address: addressOf(settings)}, 'current'));
     root.dataset.kept = Number(root.dataset.kept ?? 0) + 1;
   } catch (error) {
     console.warn(`The browser cannot store this page's work: ${error}`);

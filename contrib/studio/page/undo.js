@@ -4,10 +4,6 @@
 const MAX_UNDO = 300;
 const WORK = ['leader', 'takes', 'chosen', 'asked', 'rig'];
 
-// Bytes of a leader, a rig or an answer.
-const sizeOf = ({bytes, motion, positions}) => (bytes?.byteLength ?? 0) +
-    (motion?.positions.byteLength ?? 0) + (positions?.byteLength ?? 0);
-
 class UndoHistory {
   // `restore(work)` shows a state of the work; `onChange()` is called when the history has changed.
   constructor(restore, onChange) {
@@ -36,32 +32,6 @@ class UndoHistory {
     this.future = [];
     this.now = work;
     this.gesture = what;
-    this.onChange();
-  }
-
-  // The newest part of the history whose files and answers have at most that many bytes, for resume.
-  kept(bytes) {
-    const known = new Set();
-    const isWithin = (work) => {
-      for (const part of [work.leader, work.rig, ...work.takes]) {
-        if (!part || known.has(part)) continue;
-        known.add(part);
-        bytes -= sizeOf(part);
-      }
-      return bytes >= 0;
-    };
-    if (!this.now || !isWithin(this.now)) return null;
-    const newest = (works) => {
-      let first = works.length;
-      while (first > 0 && isWithin(works[first - 1])) --first;
-      return works.slice(first);
-    };
-    return {past: newest(this.past), now: this.now, future: newest(this.future)};
-  }
-
-  // Replaces the history by a kept one. The work in `now` must be the one that is shown.
-  resume({past, now, future}) {
-    Object.assign(this, {past, now, future, gesture: ''});
     this.onChange();
   }
 

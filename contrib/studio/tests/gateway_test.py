@@ -10,6 +10,7 @@ import signal
 import socket
 import sys
 import tempfile
+import urllib.parse
 
 import gateways
 import tools
@@ -26,17 +27,6 @@ FLOODS_OF_FIELDS = () if gateways.has_new_aiohttp() else (
 CALLS = "/duet.v1.MotionSynthesis"
 MEBIBYTE = 2**20
 LARGEST = 32 * MEBIBYTE
-# Writes the greatest number of open files at the beginning of a connection.
-COUNT_DESCRIPTORS = """
-import os, pathlib
-serving.MAX_CONNECTIONS = 8
-made, most = serving.Connection.connection_made, [0]
-def counted(self, transport):
-    made(self, transport)
-    most[0] = max(most[0], len(os.listdir("/proc/self/fd")))
-    pathlib.Path({file!r}).write_text(str(most[0]))
-serving.Connection.connection_made = counted
-"""
 HEAD = b"POST /read?name=a.bvh HTTP/1.1\r\nHost: localhost\r\n"
 HIDDEN = b"GET /about.json HTTP/1.1\r\nHost: localhost\r\n\r\n"
 CHUNKED = HEAD + b"Transfer-Encoding: chunked\r\n"
@@ -152,22 +142,9 @@ class GatewayTest(tools.ServedTest):
                 (post(call, Content_Type=GRPC_WEB, grpc_timeout="10"), 400,
                  'grpc-timeout: expected at most 8 digits and one of H, M, S, m, u and n, got "10"'),
                 (post(call, Content_Type=GRPC_WEB, grpc_timeout="-1S"), 400, "grpc-timeout: "),
-                (post("/write_on_rig", b"{}"), 400, "files: expected a list of objects with name and "
-                                                    "bytes, got none"),
-                (post("/write_on_rig", b"junk"), 400, "body: expected a first line of at most 65536 "
-                                                      'bytes with a JSON object, got "junk"'),
-                (post("/write_on_rig", b"[1]"), 400, "body: expected "),
-                (post("/write_on_rig", deep), 400, "body: expected "),
-                (post("/write_on_rig", b'{"files": 3}\n'), 400, "files: expected a list of "),
-                (post("/write_on_rig", b'{"files": [3]}\n'), 400, "files[0]: expected an object "),
-                (post("/write_on_rig", b'{"files": [{"bytes": 9}]}\n'), 400,
-                 "files[0].name: expected one, got none"),
-                (post("/write_on_rig", b'{"files": [{"name": "a.bvh"}]}\n'), 400,
-                 "files[0].bytes: expected one, got none"),
-                (post("/write_on_rig", b'{"files": [{"name": "a.bvh", "bytes": -1}]}\n'), 400,
-                 "files[0].bytes: expected a whole number of 0 or more, got "),
-                (post("/write_on_rig", b'{"files": [{"name": "a.bvh", "bytes": 9}]}\n'), 400,
-                 "files[0].bytes: expected "),
+                (post("/write_on_rig", b"{}"), 400, "name: expected "),
+                (post("/write_on_rig?name=x&rig=a/b.bvh", b"{}"), 400, "name: expected "),
+                (post("/write_on_rig?name=x&rig=a.bvh&format=bvh", b"junk"), 422, "pair.json"),
                 (post("/read?name=x.bvh", Content_Length=LARGEST + 1), 413, "body: expected "),
                 (post("/read?name=x.bvh", Content_Length="9" * 6000), 400, "request: "),
                 (post("/read?name=x.bvh", Content_Length="0" * 6000 + "9" * 15), 413, "body: "),
@@ -236,7 +213,7 @@ class GatewayTest(tools.ServedTest):
 
     def test_slow_bodies_do_not_block_others(self):
         with contextlib.ExitStack() as stack:
-            for path in ("/read?name=a.bvh", "/write?format=glb", "/write_on_rig",
+            for path in ("/read?name=a.bvh", "/write?format=glb", "/write_on_rig?name=a&rig=a.bvh&format=glb",
                          f"{CALLS}/Synthesize") * 10:
                 slow = stack.enter_context(connect(self.gateway.port))
                 slow.sendall(post(path, b"x" * 1000, Content_Type=GRPC_WEB)[:-1])
@@ -304,47 +281,6 @@ class GatewayTest(tools.ServedTest):
                              "the connection of a reader that stands still to be cut off")
         self.assertEqual(self.get("/", gateway)[0], 200)
 
-    def test_idle_connections_are_closed_for_new_ones(self):
-        gateway = self.started(bounds="serving.MAX_CONNECTIONS = 8")
-        with contextlib.ExitStack() as stack:
-            for _ in range(40):
-                stack.enter_context(connect(gateway.port))
-            self.read(gateway)
-
-    def test_limit_of_connections_holds_under_a_burst(self):
-        most = self.folder / "descriptors"
-        gateway = self.started(bounds=COUNT_DESCRIPTORS.format(file=str(most)))
-        self.read(gateway)
-        alone = int(most.read_text(encoding="ascii"))
-        with contextlib.ExitStack() as stack:
-            gateway.send(signal.SIGSTOP)  # so that all of them wait to be accepted
-            try:
-                for _ in range(100):
-                    stack.enter_context(connect(gateway.port))
-            finally:
-                gateway.send(signal.SIGCONT)
-            self.read(gateway)
-        # Eight instead of one, and one that waits for its place.
-        self.assertLessEqual(int(most.read_text(encoding="ascii")), alone + 8)
-
-    def test_connections_that_all_answer_leave_no_room(self):
-        gateway = self.started(bounds="serving.MAX_CONNECTIONS = 2")
-        with contextlib.ExitStack() as stack:
-            for _ in range(2):
-                busy = stack.enter_context(connect(gateway.port))
-                busy.sendall(post("/read?name=a.bvh", b"x", Content_Length=9, Expect="100-continue"))
-                self.assertTrue(busy.recv(100).startswith(b"HTTP/1.1 100 "))
-            with connect(gateway.port) as refused:
-                self.assertEqual(gateways.read_all(refused), b"")
-        tools.wait_until(lambda: self.has_room(gateway), "the connections to end")
-
-    def has_room(self, gateway):
-        """Whether the gateway answers another connection."""
-        with connect(gateway.port) as connection:
-            with contextlib.suppress(ConnectionError):
-                connection.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
-            return gateways.read_all(connection).startswith(b"HTTP/1.1 200 ")
-
     def test_program_is_limited_in_time_and_memory(self):
         bounds = ["conversions.PROGRAM_SECONDS = 0"]
         if not tools.SANITIZED:  # a program with AddressSanitizer does not even start
@@ -389,14 +325,13 @@ class GatewayTest(tools.ServedTest):
         self.assertIn("head", message_of(body))
 
     def write_on_rig(self, pair, rig, **settings):
-        """The answer to /write_on_rig for two files, (name, bytes)."""
-        head = {"name": "hug_seed1", "format": "bvh", **settings,
-                "files": [{"name": name, "bytes": len(data)} for name, data in (pair, rig)]}
-        return self.ask("/write_on_rig", json.dumps(head).encode() + b"\n" + pair[1] + rig[1])
+        """The answer to /write_on_rig for a pair and a rig's file, (name, bytes)."""
+        query = {"name": "hug_seed1", "format": "bvh", "rig": rig[0], **settings}
+        return self.ask(f"/write_on_rig?{urllib.parse.urlencode(query, doseq=True)}", pair + b"\n" + rig[1])
 
     def test_follower_is_written_on_a_rig(self):
         leader = tools.sample("hug").read_bytes()
-        pair = ("pair.json", self.pair())
+        pair = self.pair()
         status, headers, body = self.write_on_rig(pair, ("hug.bvh", leader), side="left")
         self.assertEqual(status, 200, body)
         self.assertEqual(headers["content-disposition"],
@@ -416,7 +351,7 @@ class GatewayTest(tools.ServedTest):
 
     def test_invalid_requests_for_a_rig_are_rejected(self):
         leader = ("hug.bvh", tools.sample("hug").read_bytes())
-        pair = ("pair.json", self.pair())
+        pair = self.pair()
         for settings, status, words in (({"follower_start": "/etc/passwd"}, 400, "settings: expected "),
                                         ({"joint_map": ["a\nb"]}, 400, "joint_map: expected "),
                                         ({"side": "up"}, 422, "--rig-side"),
@@ -425,15 +360,12 @@ class GatewayTest(tools.ServedTest):
                 found, _, body = self.write_on_rig(pair, leader, **settings)
                 self.assertEqual(found, status, body)
                 self.assertIn(words, message_of(body))
-        for first, second, words in ((pair, ("rig.bvh", b"junk"), "rig.bvh"),
-                                     (("pair.json", b"{}"), leader, "pair.json")):
+        for first, second, words in ((pair, ("rig.bvh", b"junk"), "rig.bvh"), (b"{}", leader, "pair.json")):
             status, _, body = self.write_on_rig(first, second)
             self.assertEqual(status, 422, body[:100])
             self.assertIn(words, message_of(body))
-        one = {"name": "x", "format": "bvh", "files": [{"name": "pair.json", "bytes": 0}]}
-        status, _, body = self.ask("/write_on_rig", json.dumps(one).encode() + b"\n")
-        self.assertEqual((status, message_of(body)),
-                         (400, "files: expected the pair's and the rig's, got 1"))
+        status, _, body = self.write_on_rig(pair, ("../rig.bvh", b""))
+        self.assertEqual((status, message_of(body)[:5]), (400, "name:"))
 
     def pair(self):
         """A pair in "duet-motion" JSON: the sample hug, and the same 1 m further along x."""
@@ -445,10 +377,8 @@ class GatewayTest(tools.ServedTest):
 
     def test_messages_do_not_reveal_paths(self):
         for path, body in (("/read?name=junk.bvh", b"junk"), ("/write?format=glb", b"{}"),
-                           ("/write?format=html", b"{}"), ("/write_on_rig", json.dumps(
-                               {"format": "bvh", "files": [{"name": name, "bytes": 1} for name in
-                                                           ("a.json", "b.bvh")]}).encode() +
-                            b"\nxy")):
+                           ("/write?format=html", b"{}"),
+                           ("/write_on_rig?name=x&rig=b.bvh&format=bvh", b"x\ny")):
             status, _, body = self.ask(path, body)
             self.assertEqual(status, 422)
             self.assertNotIn(tempfile.gettempdir(), message_of(body))

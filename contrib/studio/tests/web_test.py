@@ -105,30 +105,6 @@ class WebTest(StudioTest):
         self.label(page, "kick", 0)
         self.assertEqual(self.take_sample(page, "punch"), {"push": 0.5})
 
-    def test_reload_keeps_undo_and_redo(self):
-        page = self.open_still()
-        self.take_sample(page, "hug")
-        self.react(page)
-        self.label(page, "push", 0.5)
-        page.evaluate("undoHistory.endGesture()")
-        self.label(page, "kick", 0.25)
-        page.evaluate("undoHistory.undo(); undoHistory.endGesture()")
-        titles = "[element('undo').title, element('redo').title]"
-        before = page.evaluate(titles)
-        self.assertEqual(before, ["Undo: weight of push", "Redo: weight of kick"])
-        page.reload()
-        self.assertEqual(page.evaluate(titles), before)
-        self.assertEqual(page.evaluate("[settings.labels.push, state.takes.length]"), [0.5, 1])
-        for steps, (takes, push) in enumerate(((1, 0), (0, 0))):
-            page.evaluate("undoHistory.undo()")
-            self.assertEqual(page.evaluate("[state.takes.length, settings.labels.push ?? 0]"),
-                             [takes, push], steps)
-        page.evaluate("undoHistory.redo()")
-        self.assertEqual(len(self.shown(page)), 91)
-        # Another tab has the work, but not what this one did.
-        other = self.open_still(page.evaluate("location.hash"))
-        self.assertEqual(other.evaluate("[state.leader.name, element('undo').disabled]"), ["hug.bvh", True])
-
     def test_single_pose_is_refused(self):
         page = self.open_still()
         lines = re.sub("Frames: .*", "Frames: 1", tools.sample("hug").read_text("utf-8")).split("\n")
