@@ -31,7 +31,6 @@ import uploads  # noqa: E402
 from aiohttp import web  # noqa: E402
 
 SAMPLES = HERE.parents[1] / "samples"
-SESSIONS_PER_ADDRESS = 8
 TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".bvh": "text/plain"}
 
 
@@ -133,10 +132,6 @@ async def send_download(request, file):
 async def run(options):
     tls = duet.TlsOptions.from_files(ca=options.tls_ca) if options.tls_ca else None
     program = conversions.Duet()
-    proxies = live_socket.networks_of(options.proxy)
-    if options.sessions_per_address < 1:
-        raise ValueError("--sessions-per-address: expected 1 or more, got "
-                         f"{options.sessions_per_address}")
 
     def started(address):
         host = f"[{address[0]}]" if ":" in address[0] else address[0]
@@ -145,8 +140,7 @@ async def run(options):
     # An open channel can prevent the process from ending.
     backend = grpc_web.connect(options.server, tls)
     try:
-        live = live_socket.LiveSockets(backend, proxies, options.sessions_per_address)
-        gateway = Gateway(program, backend, live)
+        gateway = Gateway(program, backend, live_socket.LiveSockets(backend))
         server = serving.Server(gateway.routes(),
                                 serving.allowed_hosts(options.listen, options.host))
         await serving.serve(server, options.listen, started, gateway.live.close)
@@ -163,12 +157,6 @@ def main(arguments):
     parser.add_argument("--host", action="append", default=[], metavar="NAME",
                         help="additional host name of the gateway in URLs, beside localhost, "
                              "127.0.0.1, [::1] and the host of --listen; repeatable")
-    parser.add_argument("--proxy", action="append", default=[], metavar="ADDRESS",
-                        help="address or network of a proxy in front of the gateway whose "
-                             "X-Forwarded-For header names the visitor; repeatable")
-    parser.add_argument("--sessions-per-address", type=int, default=SESSIONS_PER_ADDRESS,
-                        metavar="COUNT", help="live sessions that one address may hold at a time "
-                                              "(default: %(default)s)")
     parser.add_argument("--tls-ca",
                         help="use TLS to the server and trust the authorities in this file")
     options = parser.parse_args(arguments)

@@ -9,7 +9,6 @@ the browser ends the leader. The last message to the browser is text: the call's
 import asyncio
 import base64
 import contextlib
-import ipaddress
 import json
 import time
 
@@ -29,7 +28,6 @@ PING_SECONDS = 10             # a browser that does not answer a ping is gone
 SEND_SECONDS = 10             # for a message to leave for the browser or for the server
 CLOSE_SECONDS = 1             # for the browser to answer the end of a session
 LONGEST_REASON = 120          # bytes; a limit of RFC 6455
-IPV6_PREFIX = 64              # bits; one visitor has all addresses that share them
 # WebSocket close codes (RFC 6455).
 DONE, GOING_AWAY, UNSUPPORTED, POLICY, FAILED = 1000, 1001, 1003, 1008, 1011
 
@@ -45,11 +43,9 @@ class Ended(Exception):
 class LiveSockets:
     """The sessions of a gateway."""
 
-    def __init__(self, backend, proxies, most_of_one):
+    def __init__(self, backend):
         self._backend = backend
-        self._proxies = proxies
-        self._most_of_one = most_of_one
-        self._sessions = {}  # the visitor of each session's task
+        self._sessions = set()  # the task of each
 
     async def answer(self, request):
         """Handles a request for a session, until its end."""
@@ -57,17 +53,12 @@ class LiveSockets:
         if len(self._sessions) >= MAX_SESSIONS:
             raise serving.Rejected(503, f"sessions: expected fewer than {MAX_SESSIONS}, got one "
                                         "more; try again later")
-        visitor = visitor_of(request, self._proxies)
-        if list(self._sessions.values()).count(visitor) >= self._most_of_one:
-            raise serving.Rejected(429, f"sessions: expected at most {self._most_of_one} from one "
-                                        "address, got one more; close another page, or start the "
-                                        "gateway with --proxy ADDRESS if a proxy stands before it")
         metadata = grpc_web.metadata_of(request.headers)
         # Without compression, a small message cannot become a large one.
         socket = web.WebSocketResponse(heartbeat=PING_SECONDS, compress=False,
                                        max_msg_size=MAX_MESSAGE_BYTES, timeout=SEND_SECONDS)
         task = asyncio.current_task()
-        self._sessions[task] = visitor
+        self._sessions.add(task)
         try:
             try:
                 await socket.prepare(request)
@@ -76,7 +67,7 @@ class LiveSockets:
             serving.without_time_limit(request)
             await self._session(request, socket, metadata)
         finally:
-            self._sessions.pop(task, None)
+            self._sessions.discard(task)
         return socket
 
     async def close(self):
@@ -191,48 +182,3 @@ class Rate:
         self._count = self._count + 1 if second == self._second else 1
         self._second = second
         return self._count <= self._limit
-
-
-# Who opens a session: the address of its connection, or the one that a trusted proxy names.
-
-
-def networks_of(proxies):
-    """The networks of --proxy, each an address or a network. Raises ValueError with the wrong one."""
-    networks = []
-    for text in proxies:
-        try:
-            networks.append(ipaddress.ip_network(text, strict=False))
-        except ValueError:
-            raise ValueError(f"--proxy: expected an address or a network such as 10.0.0.0/8, got "
-                             f"{text!r}") from None
-    return networks
-
-
-def visitor_of(request, proxies):
-    """The visitor that a request counts for. `proxies` are networks whose X-Forwarded-For is trusted;
-    each proxy appends the address that it was called from."""
-    forwarded = [part.strip() for line in request.headers.getall("X-Forwarded-For", ())
-                 for part in line.split(",")]
-    address = request.remote or ""
-    while forwarded and is_within(address, proxies):
-        address = forwarded.pop()
-    found = parsed(address)
-    if found is None:
-        return address
-    if found.version == 6:
-        return str(ipaddress.ip_network((found, IPV6_PREFIX), strict=False))
-    return str(found)
-
-
-def is_within(address, networks):
-    found = parsed(address)
-    return found is not None and any(found in network for network in networks)
-
-
-def parsed(address):
-    """An address as text; None if it is none."""
-    try:
-        found = ipaddress.ip_address(address.strip("[]"))
-    except ValueError:
-        return None
-    return getattr(found, "ipv4_mapped", None) or found
