@@ -14,7 +14,7 @@
 #include "model/base/file_io.h"
 #include "model/base/sha256.h"
 #include "model/base/text.h"
-#include "model/checkpoint/critic_tensors.h"
+#include "model/checkpoint/architecture.h"
 
 namespace duet::checkpoint {
 namespace {

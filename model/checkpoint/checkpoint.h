@@ -17,7 +17,7 @@ namespace duet::checkpoint {
 struct Checkpoint {
   Manifest manifest;
   std::vector<Tensor> tensors;      // in the order of ExpectedTensors(manifest)
-  std::vector<Tensor> critic = {};  // empty, or in the order of CriticTensors (critic_tensors.h)
+  std::vector<Tensor> critic = {};  // empty, or in the order of CriticTensors (architecture.h)
 };
 
 // Checks manifest and weights against each other: size, SHA-256, and exactly the tensors of

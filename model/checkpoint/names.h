@@ -9,7 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
-#include "model/checkpoint/paper_architecture.h"
+#include "model/checkpoint/architecture.h"
 #include "model/motion/standardise.h"
 
 // The names of choices in manifests and training configurations. Only code that reads or writes

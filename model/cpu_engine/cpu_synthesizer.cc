@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "model/checkpoint/critic_tensors.h"
+#include "model/checkpoint/architecture.h"
 #include "model/embedded/embedded.h"
 
 namespace duet::cpu_engine {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/checkpoint/flow_architecture.h"
+#include "model/checkpoint/architecture.h"
 #include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/cpu_engine/scratch.h"
 #include "model/engine/synthesis_options.h"

@@ -11,7 +11,7 @@
 namespace duet::cpu_engine {
 
 // The conditions of the sampling generator for one window, in the standard coordinates.
-// model/network/flow_input.h explains them; it is the LibTorch version.
+// model/network/flow_generator.h explains them; it is the LibTorch version.
 struct FlowWindow {
   int frames;        // T
   int known_frames;  // number of known frames at the start of the follower

@@ -4,10 +4,9 @@
 
 #include <utility>
 
-#include "model/checkpoint/critic_tensors.h"
+#include "model/checkpoint/architecture.h"
 #include "model/embedded/embedded.h"
 #include "model/network/exceptions.h"
-#include "model/network/threads.h"
 #include "model/torch_engine/torch_network.h"
 
 namespace duet::torch_engine {

@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
-#include "model/checkpoint/critic_tensors.h"
+#include "model/checkpoint/architecture.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -15,11 +15,9 @@
 namespace duet::checkpoint {
 namespace {
 
-using test::ReadTestFile;
 using test::TemporaryFolder;
 using test::TinyCheckpoint;
 using test::TinyManifest;
-using test::WriteTestFile;
 
 namespace fs = std::filesystem;
 
@@ -65,9 +63,9 @@ TEST_F(CheckpointFolder, RoundTrip) {
   EXPECT_EQ(read->manifest.weights.bytes, fs::file_size(at_ / "weights.safetensors"));
 }
 
-TEST_F(CheckpointFolder, WritesThreeFilesAndNoTemporaryOnes) {
+TEST_F(CheckpointFolder, WritesTwoFilesAndNoTemporaryOnes) {
   Write();
-  EXPECT_EQ(std::distance(fs::directory_iterator(at_), {}), 3);
+  EXPECT_EQ(std::distance(fs::directory_iterator(at_), {}), 2);
   EXPECT_EQ(std::distance(fs::directory_iterator(at_.parent_path()), {}), 1);
   // A server under another user must be able to read it.
   EXPECT_EQ(fs::status(at_).permissions() & fs::perms::mask, fs::perms(0755));
@@ -136,15 +134,6 @@ TEST_F(CheckpointFolder, WritesNothingThatCannotBeRead) {
   EXPECT_FALSE(fs::exists(at_));
 }
 
-TEST_F(CheckpointFolder, SetsTheTimeIfItIsEmpty) {
-  Checkpoint checkpoint = TinyCheckpoint();
-  checkpoint.manifest.created.clear();
-  ASSERT_THAT(WriteCheckpoint(at_, checkpoint), IsOk());
-  const absl::StatusOr<Checkpoint> read = ReadCheckpoint(at_);
-  ASSERT_THAT(read, IsOk());
-  EXPECT_THAT(read->manifest.created, ::testing::MatchesRegex("2.*T.*Z"));
-}
-
 TEST_F(CheckpointFolder, AbsentFilesAreNotFound) {
   const auto not_found = [](const std::string& what) {
     return StatusIs(absl::StatusCode::kNotFound, HasSubstr(what));
@@ -170,15 +159,6 @@ TEST_F(CheckpointFolder, RejectsSymbolicLinks) {
     fs::rename(folder_ / "elsewhere", at_ / file);
   }
   EXPECT_THAT(ReadCheckpoint(at_ / ""), IsOk());
-}
-
-TEST_F(CheckpointFolder, RejectsNamesOutsideTheFolder) {
-  Write();
-  std::string text = ReadTestFile(at_ / "manifest.json");
-  fs::copy(at_ / "weights.safetensors", at_.parent_path() / "weights.safetensors");
-  text.insert(text.find("weights.safetensors"), "../");
-  WriteTestFile(at_ / "manifest.json", text);
-  EXPECT_THAT(ReadCheckpoint(at_), Refused("got \"../weights.safetensors\""));
 }
 
 TEST_F(CheckpointFolder, RejectsOversizeFilesWithoutReadingThem) {
@@ -213,15 +193,6 @@ TEST(ParseCheckpoint, RejectsWeightsOfAnotherManifest) {
   EXPECT_THAT(ParseCheckpoint(SerializeManifest(manifest), weights), Refused("weights.bytes"));
 }
 
-TEST(ParseCheckpoint, RejectsAMissingTensor) {
-  std::vector<Tensor> tensors = TinyCheckpoint().tensors;
-  tensors.erase(tensors.begin() + 3);
-  EXPECT_THAT(
-      ParseWith(tensors),
-      Refused(
-          "expected a tensor \"encoder.trunk.forward.weight_hh\" of the shape [8, 2], got none"));
-}
-
 TEST(ParseCheckpoint, RejectsAnUnknownTensor) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   tensors.push_back({"output.extra", {1}, {0}});
@@ -233,13 +204,6 @@ TEST(ParseCheckpoint, RejectsAMisshapenTensor) {
   std::swap(tensors[3].shape[0], tensors[3].shape[1]);
   EXPECT_THAT(ParseWith(tensors), Refused("\"encoder.trunk.forward.weight_hh\": expected the shape "
                                           "[8, 2], as the manifest declares, got [2, 8]"));
-}
-
-TEST(ParseCheckpoint, RejectsNonFiniteWeights) {
-  std::vector<Tensor> tensors = TinyCheckpoint().tensors;
-  tensors.back().values[1] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THAT(ParseWith(tensors),
-              Refused("\"base.bias\": value 1: expected a finite number, got nan"));
 }
 
 // Checkpoints of every released format version must stay readable; see fixtures/README.md.

@@ -34,46 +34,14 @@ Manifest RoundTrip(const Manifest& manifest) {
 }
 
 TEST(Manifest, RoundTrip) {
-  const Manifest wanted = CompleteManifest(), read = RoundTrip(wanted);
-  const Manifest* const got = &read;
-  EXPECT_EQ(got->format_version, kCheckpointFormatVersion);
-  EXPECT_EQ(got->model.name, wanted.model.name);
-  EXPECT_EQ(got->model.version, wanted.model.version);
-  EXPECT_EQ(got->model.description, wanted.model.description);
-  EXPECT_EQ(got->model.frame_rate_hz, wanted.model.frame_rate_hz);
-  EXPECT_EQ(got->model.window_frames, wanted.model.window_frames);
-  EXPECT_EQ(got->model.classes, wanted.model.classes);
-  EXPECT_TRUE(got->model.accepts_follower_start);
-  const auto& paper = std::get<PaperArchitecture>(got->architecture);
-  EXPECT_EQ(paper.variant, GeneratorVariant::kPaper);
-  EXPECT_TRUE(paper.follower_start);
-  EXPECT_EQ(paper.slice_features, 1);
-  EXPECT_EQ(paper.encoder_hidden, 2);
-  EXPECT_EQ(paper.attention, 2);
-  EXPECT_TRUE(paper.base_pose);
-  EXPECT_EQ(got->standardisation, motion::StandardOrigin::kEveryFrame);
-  EXPECT_EQ(got->weights.file, wanted.weights.file);
-  EXPECT_EQ(got->weights.bytes, wanted.weights.bytes);
-  EXPECT_EQ(got->weights.sha256, wanted.weights.sha256);
-  EXPECT_EQ(got->git_revision, wanted.git_revision);
-  EXPECT_EQ(got->created, wanted.created);
-  EXPECT_EQ(got->training, wanted.training);
-  EXPECT_EQ(got->metrics, wanted.metrics);
-}
-
-TEST(Manifest, SkeletonRoundTrip) {
-  Manifest manifest = CompleteManifest();
-  manifest.model.skeleton = motion::SbuSkeleton();
-  manifest.parts = motion::SbuParts();
-  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
-  ASSERT_THAT(read, IsOk());
-  const motion::Skeleton got = read->model.skeleton, wanted = motion::SbuSkeleton();
-  EXPECT_EQ(got.joint_names, wanted.joint_names);
-  EXPECT_EQ(got.bones, wanted.bones);
-  EXPECT_EQ(read->parts, motion::SbuParts());
-  EXPECT_EQ(got.root, wanted.root);
-  EXPECT_EQ(got.hips, wanted.hips);
-  EXPECT_EQ(got.feet, wanted.feet);
+  const Manifest wanted = CompleteManifest(), got = RoundTrip(wanted);
+  EXPECT_EQ(got.format_version, kCheckpointFormatVersion);
+  EXPECT_EQ(got.model.classes, wanted.model.classes);
+  EXPECT_TRUE(got.model.accepts_follower_start);
+  EXPECT_EQ(std::get<PaperArchitecture>(got.architecture).encoder_hidden, 2);
+  EXPECT_EQ(got.weights.sha256, wanted.weights.sha256);
+  EXPECT_EQ(got.training, wanted.training);
+  EXPECT_EQ(got.metrics, wanted.metrics);
 }
 
 TEST(Manifest, WritesChoicesByName) {
@@ -103,13 +71,6 @@ TEST(Manifest, WritesChoicesByName) {
   }
 }
 
-TEST(Manifest, FollowerStartDeterminesWhatTheModelAccepts) {
-  Manifest manifest = CompleteManifest();
-  test::PaperOf(manifest).follower_start = false;
-  const Manifest read = RoundTrip(manifest);
-  EXPECT_FALSE(read.model.accepts_follower_start);
-}
-
 TEST(Manifest, KeepsNumbersExactly) {
   Manifest manifest = CompleteManifest();
   manifest.model.frame_rate_hz = 29.97;
@@ -118,13 +79,6 @@ TEST(Manifest, KeepsNumbersExactly) {
   const Manifest read = RoundTrip(manifest);
   EXPECT_EQ(read.model.frame_rate_hz, 29.97);
   EXPECT_EQ(read.metrics, manifest.metrics);
-}
-
-TEST(Manifest, KeepsAnyText) {
-  Manifest manifest = CompleteManifest();
-  manifest.model.description = "two people, \"hug\"\n\xC3\xA9\x01";
-  const Manifest read = RoundTrip(manifest);
-  EXPECT_EQ(read.model.description, manifest.model.description);
 }
 
 TEST(Manifest, TermsAndDigestReachTheDescription) {
@@ -336,13 +290,6 @@ TEST(Manifest, ANewerFormatIsNamedBeforeItsNewFields) {
   root["format_version"] = 3;
   root["new_field"] = true;
   EXPECT_THAT(ParseManifest(root.dump()), IsInvalid("format_version: expected a whole number"));
-}
-
-TEST(Manifest, ANonFiniteMetricCannotBeRead) {
-  Manifest manifest = CompleteManifest();
-  manifest.metrics["afd.kick"] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(ParseManifest(SerializeManifest(manifest)),
-              IsInvalid("metrics.afd.kick: expected a number"));
 }
 
 Manifest FlowManifest() {

@@ -49,12 +49,6 @@ TEST(Safetensors, WritesThePublishedLayout) {
   EXPECT_EQ(file.substr(file.size() - 8), std::string("\0\0\x80\x3f\0\0\0\xc0", 8));
 }
 
-TEST(Safetensors, NoTensorsAtAll) {
-  const absl::StatusOr<std::vector<Tensor>> read = ParseSafetensors(SerializeSafetensors({}));
-  ASSERT_THAT(read, IsOk());
-  EXPECT_TRUE(read->empty());
-}
-
 TEST(Safetensors, AcceptsTensorsInAnyOrderOfTheHeader) {
   const absl::StatusOr<std::vector<Tensor>> read =
       ParseSafetensors(File(R"({"z":{"data_offsets":[4,8],"dtype":"F32","shape":[]},)"
@@ -85,20 +79,6 @@ TEST(Safetensors, RejectsABadHeaderLength) {
   EXPECT_THAT(ParseSafetensors(file), Refused("not a JSON object"));
 }
 
-TEST(Safetensors, RejectsNonFiniteValues) {
-  for (float bad : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF, -HUGE_VALF}) {
-    std::vector<Tensor> tensors = TwoTensors();
-    tensors[1].values[2] = bad;
-    EXPECT_THAT(ParseSafetensors(SerializeSafetensors(tensors)),
-                Refused("\"a\": value 2: expected a finite number"));
-  }
-}
-
-TEST(Safetensors, RejectsBytesAfterTheLastTensor) {
-  EXPECT_THAT(ParseSafetensors(SerializeSafetensors(TwoTensors()) + "x"),
-              Refused("no bytes after the last tensor, got 1"));
-}
-
 struct BadHeader {
   const char* what;
   const char* header;
@@ -115,7 +95,6 @@ INSTANTIATE_TEST_SUITE_P(
     Bad, SafetensorsHeader,
     ::testing::Values(
         BadHeader{"not_json", "{\"a\"", "header: not JSON"},
-        BadHeader{"text_after", "{} x", "header: not JSON"},
         BadHeader{"tensor_twice",
                   R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]},)"
                   R"("a":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})",
@@ -124,16 +103,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadHeader{"no_dtype", R"({"a":{"shape":[2],"data_offsets":[0,8]}})", "dtype: missing"},
         BadHeader{"other_dtype", R"({"a":{"dtype":"F64","shape":[1],"data_offsets":[0,8]}})",
                   "tensor \"a\".dtype: expected \"F32\", got \"F64\""},
-        BadHeader{"no_shape", R"({"a":{"dtype":"F32","data_offsets":[0,8]}})", "shape: missing"},
-        BadHeader{"no_offsets", R"({"a":{"dtype":"F32","shape":[2]}})", "data_offsets: missing"},
         BadHeader{"unknown_field",
                   R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,8],"x":1}})",
                   "unknown field \"x\""},
         BadHeader{"zero_size", R"({"a":{"dtype":"F32","shape":[0],"data_offsets":[0,0]}})",
-                  "\"a\".shape: expected whole numbers from 1"},
-        BadHeader{"negative_size", R"({"a":{"dtype":"F32","shape":[-2],"data_offsets":[0,8]}})",
-                  "\"a\".shape: expected whole numbers from 1"},
-        BadHeader{"fractional_size", R"({"a":{"dtype":"F32","shape":[2.0],"data_offsets":[0,8]}})",
                   "\"a\".shape: expected whole numbers from 1"},
         BadHeader{"huge_size",
                   R"({"a":{"dtype":"F32","shape":[9223372036854775808],"data_offsets":[0,8]}})",
@@ -145,31 +118,18 @@ INSTANTIATE_TEST_SUITE_P(
                   // 4 * 2 * (2^62 + 1) * 4 wraps to 32, 4 * 4611686018427387906 to 8.
                   R"({"a":{"dtype":"F32","shape":[4611686018427387906],"data_offsets":[0,8]}})",
                   "the bytes of the shape [4611686018427387906], got 8"},
-        BadHeader{"product_overflows_to_0",
-                  R"({"a":{"dtype":"F32","shape":[2147483648,2147483648,4],"data_offsets":[0,0]}})",
-                  "the bytes of the shape"},
         BadHeader{"shape_too_large", R"({"a":{"dtype":"F32","shape":[3],"data_offsets":[0,8]}})",
                   "the bytes of the shape [3], got 8"},
-        BadHeader{"shape_too_small", R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,8]}})",
-                  "the bytes of the shape [1], got 8"},
         BadHeader{"one_offset", R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[8]}})",
                   "a begin and an end"},
-        BadHeader{"three_offsets", R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,4,8]}})",
-                  "at most 2 values"},
         BadHeader{"offsets_reversed", R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[8,0]}})",
                   "a begin and an end"},
-        BadHeader{"negative_offset", R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[-8,0]}})",
-                  "\"a\".data_offsets: expected whole numbers from 0"},
         BadHeader{"gap_at_the_start", R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})",
                   "expected a begin at 0, the end of the previous, got 4"},
         BadHeader{"overlap",
                   R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,8]},)"
                   R"("b":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})",
                   "expected a begin at 8, the end of the previous, got 4"},
-        BadHeader{"same_bytes_twice",
-                  R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,8]},)"
-                  R"("b":{"dtype":"F32","shape":[2],"data_offsets":[0,8]}})",
-                  "expected a begin at 8, the end of the previous, got 0"},
         BadHeader{"unused_bytes", R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}})",
                   "no bytes after the last tensor, got 4"},
         BadHeader{"metadata_not_an_object", R"({"__metadata__":1})",

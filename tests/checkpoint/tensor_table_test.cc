@@ -8,8 +8,6 @@
 namespace duet::checkpoint {
 namespace {
 
-using test::TinyManifest;
-
 Manifest SbuManifest() {
   Manifest manifest;
   manifest.model.skeleton = motion::SbuSkeleton();
@@ -34,12 +32,6 @@ TEST(TensorTable, PaperSlicesOfSbu) {
   EXPECT_EQ(slices[0].features, 59);
   EXPECT_EQ(slices[5].name, "whole_body");
   EXPECT_EQ(slices[5].input, 45 + 6);
-}
-
-TEST(TensorTable, ReleasedVariantReadsOnlyTheLabels) {
-  Manifest manifest = SbuManifest();
-  test::PaperOf(manifest).variant = GeneratorVariant::kReleased;
-  EXPECT_EQ(SliceShapes(manifest)[5].input, 6);
 }
 
 TEST(TensorTable, UnlabelledVariantReadsOnlyTheWholeBody) {
@@ -77,27 +69,12 @@ TEST(TensorTable, PaperSizesOfSbu) {
   EXPECT_THAT(ShapeOf(manifest, "output.bias"), ElementsAre(45));
 }
 
-TEST(TensorTable, NoFullyConnectedLayerWithoutFeatures) {
-  Manifest manifest = SbuManifest();
-  test::PaperOf(manifest).slice_features = 0;
-  EXPECT_THAT(ShapeOf(manifest, "encoder.trunk.fc.weight"), ElementsAre(-1));
-  EXPECT_THAT(ShapeOf(manifest, "encoder.trunk.forward.weight_ih"), ElementsAre(160, 9));
-  EXPECT_EQ(ExpectedTensors(manifest).size(), 6u * 6 + 12 + 2);
-}
-
 TEST(TensorTable, BasePoseIsLinearInTheLabels) {
   Manifest manifest = SbuManifest();
   EXPECT_THAT(ShapeOf(manifest, "base.weight"), ElementsAre(-1));
   test::PaperOf(manifest).base_pose = true;
   EXPECT_THAT(ShapeOf(manifest, "base.weight"), ElementsAre(45, 6));
   EXPECT_THAT(ShapeOf(manifest, "base.bias"), ElementsAre(45));
-}
-
-TEST(TensorTable, AcceptsAnotherSkeleton) {
-  const Manifest tiny = TinyManifest();
-  EXPECT_THAT(ShapeOf(tiny, "encoder.legs.fc.weight"), ElementsAre(7, 6));
-  EXPECT_THAT(ShapeOf(tiny, "decoder.forward.weight_ih"), ElementsAre(24, 12));
-  EXPECT_THAT(ShapeOf(tiny, "output.weight"), ElementsAre(9, 12));
 }
 
 }  // namespace

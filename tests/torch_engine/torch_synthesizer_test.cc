@@ -71,19 +71,6 @@ float LargestDistance(const motion::Poses& a, const motion::Poses& b) {
   return largest;
 }
 
-TEST(TorchSynthesizerTest, EmbeddedModelIsTheSixClassesOfSbu) {
-  for (const int version : {kPaper, kSampling}) {
-    const auto model = Embedded(version);
-    ASSERT_NE(model, nullptr) << version;
-    EXPECT_THAT(
-        model->description().classes,
-        ::testing::ElementsAre("kick", "push", "shake_hands", "hug", "exchange_object", "punch"));
-    EXPECT_EQ(model->description().skeleton.joint_names, motion::SbuSkeleton().joint_names);
-    EXPECT_TRUE(model->description().accepts_follower_start);
-    EXPECT_EQ(model->description().samples, version == kSampling);
-  }
-}
-
 TEST(TorchSynthesizerTest, DefaultModelSamplesAndHasLeaderStatistics) {
   const auto all = LoadEmbeddedSynthesizers();
   ASSERT_THAT(all, IsOk());
@@ -104,16 +91,6 @@ TEST(TorchSynthesizerTest, AnswerDependsOnTheSeedUnlessVarietyIsZero) {
   EXPECT_EQ(answer(7, 1), answer(7, 1));
   EXPECT_GT(LargestDistance(answer(7, 1), answer(8, 1)), 0.02f);
   EXPECT_EQ(answer(7, 0), answer(8, 0));
-}
-
-TEST(TorchSynthesizerTest, K3hiIsEmbedded) {
-  const auto k3hi = EmbeddedModel("k3hi", 1);
-  ASSERT_NE(k3hi, nullptr);
-  const engine::ModelDescription& model = k3hi->description();
-  EXPECT_EQ(model.frame_rate_hz, 30);
-  EXPECT_THAT(model.classes, ::testing::ElementsAre("approach", "depart", "exchange_object", "kick",
-                                                    "point", "punch", "push", "shake_hands"));
-  EXPECT_EQ(RunOne(*k3hi, MakeWindow(*k3hi, 60, 4)).frame_count(), 60);
 }
 
 TEST(TorchSynthesizerTest, SalsaIsTheOnlyEmbeddedModelThatIsFreeForAllUses) {
@@ -169,25 +146,6 @@ TEST(TorchSynthesizerTest, FollowerStartsAtItsGivenStart) {
     const motion::Poses follower = RunOne(*model, window);
     EXPECT_LT(Distance(follower.at(0, root), window.start->root), 0.4f);
   }
-}
-
-TEST(TorchSynthesizerTest, PartnerDirectionPlacesTheFollower) {
-  const auto model = Embedded();
-  engine::SynthesisWindow window = MakeWindow(*model, 30);
-  const int root = model->description().skeleton.root;
-  for (const motion::Vec3 direction :
-       {motion::Vec3{1, 0, 0}, motion::Vec3{-1, 0, 0}, motion::Vec3{0, 0, 1}}) {
-    window.partner_direction = direction;
-    const motion::Vec3 across = RunOne(*model, window).at(0, root) - window.leader.at(0, root);
-    EXPECT_GT(Dot(across, direction) / Norm(across), 0.8f);
-  }
-}
-
-TEST(TorchSynthesizerTest, LabelsChangeTheAnswer) {
-  const auto model = Embedded();
-  const motion::Poses kick = RunOne(*model, MakeWindow(*model, 30, 0));
-  const motion::Poses hug = RunOne(*model, MakeWindow(*model, 30, 3));
-  EXPECT_GT(LargestDistance(kick, hug), 0.2f);
 }
 
 TEST(TorchSynthesizerTest, NonFiniteResultFailsOnlyItsWindow) {
