@@ -8,7 +8,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "model/authoring/monotone_cubic.h"
 #include "model/authoring/puppet.h"
 #include "model/base/text.h"
 #include "model/motion/motion_limits.h"
@@ -16,6 +15,52 @@
 
 namespace duet::authoring {
 namespace {
+
+// Interpolates a value over time through keys. It starts and ends at rest, has a continuous
+// velocity, and never leaves the range of the two neighbouring keys (a planted foot stays planted,
+// a reach does not overshoot). It is constant before the first key and after the last.
+//
+// Source: Fritsch and Carlson 1980, with the harmonic mean of the neighbouring slopes.
+class MonotoneCubic {
+ public:
+  struct Key {
+    double time = 0;
+    double value = 0;
+  };
+  // Requires at least one key, with strictly increasing times.
+  explicit MonotoneCubic(std::vector<Key> keys);
+  double At(double time) const;
+
+ private:
+  std::vector<Key> keys_;
+  std::vector<double> slopes_;  // [keys]
+};
+
+MonotoneCubic::MonotoneCubic(std::vector<Key> keys)
+    : keys_(std::move(keys)), slopes_(keys_.size(), 0.0) {
+  for (std::size_t k = 1; k + 1 < keys_.size(); ++k) {
+    const double before =
+        (keys_[k].value - keys_[k - 1].value) / (keys_[k].time - keys_[k - 1].time);
+    const double after =
+        (keys_[k + 1].value - keys_[k].value) / (keys_[k + 1].time - keys_[k].time);
+    // Zero at a turning point; elsewhere the harmonic mean, which the flatter side dominates.
+    if (before * after > 0) slopes_[k] = 2 * before * after / (before + after);
+  }
+}
+
+double MonotoneCubic::At(double time) const {
+  if (time <= keys_.front().time) return keys_.front().value;
+  if (time >= keys_.back().time) return keys_.back().value;
+  const auto after = std::upper_bound(keys_.begin(), keys_.end(), time,
+                                      [](double t, const Key& key) { return t < key.time; });
+  const std::size_t k = static_cast<std::size_t>(after - keys_.begin()) - 1;
+  const Key& a = keys_[k];
+  const Key& b = keys_[k + 1];
+  const double span = b.time - a.time, t = (time - a.time) / span;
+  const double t2 = t * t, t3 = t2 * t;
+  return (2 * t3 - 3 * t2 + 1) * a.value + (t3 - 2 * t2 + t) * span * slopes_[k] +
+         (3 * t2 - 2 * t3) * b.value + (t3 - t2) * span * slopes_[k + 1];
+}
 
 constexpr double kLongestMotion = 60;
 constexpr double kDefaultFrameRateHz = 30;

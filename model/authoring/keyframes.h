@@ -20,7 +20,8 @@ namespace duet::authoring {
 //
 // Tracks: torso, pelvis, chest, head, left_foot, right_foot, left_hand, right_hand (three values),
 // left_elbow, right_elbow, left_knee, right_knee (one). A track passes smoothly through its keys
-// (MonotoneCubic). A track without keys keeps the value of a relaxed stand. '#' starts a comment.
+// and never overshoots them. A track without keys keeps the value of a relaxed stand. '#' starts a
+// comment.
 //
 // Returns the joints of SbuSkeleton, facing +z. At most a minute.
 // Errors: INVALID_ARGUMENT "source:line: ...: expected ..., got ...".

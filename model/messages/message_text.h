@@ -3,11 +3,26 @@
 
 #include <google/protobuf/message.h>
 
+#include <map>
+#include <string>
+
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
-#include "model/messages/field_places.h"
 
 namespace duet::messages {
+
+// A place in a text; line and column count from 1.
+struct Place {
+  int line = 1;
+  int column = 1;
+  friend bool operator<(const Place& a, const Place& b) {
+    return a.line != b.line ? a.line < b.line : a.column < b.column;
+  }
+};
+
+// Where a text sets a message's fields, by their names in the schema: "max_calls", and
+// "version_labels[0]" for each element of a repeated field.
+using FieldPlaces = std::map<std::string, Place>;
 
 // The syntax of a protobuf message in a file.
 enum class MessageSyntax { kTextFormat, kJson };

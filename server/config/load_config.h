@@ -12,7 +12,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
-#include "model/messages/field_places.h"
+#include "model/messages/message_text.h"
 #include "server/config/settings.h"
 
 namespace duet::server::config {

@@ -93,31 +93,6 @@ TEST(ParseMessage, TellsEverythingThatIsWrongWithJson) {
   EXPECT_EQ(api.version(), "2") << "what is right is read all the same";
 }
 
-TEST(ParseMessage, ARepeatedListIsTheLastOne) {
-  google::protobuf::Api api;
-  FieldPlaces places;
-  EXPECT_THAT(ParseMessage(R"({
-  "methods": 2.5,
-  "methods": [{"name": "x"},
-              {"request": "y"}]
-})",
-                           MessageSyntax::kJson, &api, &places),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       AllOf(StartsWith("line 3:3: methods: is repeated"),
-                             HasSubstr("\nline 4:15: "), HasSubstr("methods[1]"))));
-  EXPECT_EQ(places["methods[0]"].line, 3);
-  EXPECT_EQ(places["methods[1]"].line, 4);
-}
-
-TEST(ParseMessage, TellsWhereJsonEnds) {
-  google::protobuf::Api api;
-  EXPECT_THAT(ParseMessage("{\n  \"name\": \"a\",\n  \"version\" 3\n}", MessageSyntax::kJson, &api),
-              StatusIs(absl::StatusCode::kInvalidArgument, StartsWith("line 3:")));
-  const std::string deep = "{\"name\": " + std::string(200000, '[');
-  EXPECT_THAT(ParseMessage(deep, MessageSyntax::kJson, &api),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("nested deeper")));
-}
-
 TEST(ParseMessage, TellsEveryUnknownFieldOfTheTextFormat) {
   google::protobuf::Api api;
   EXPECT_THAT(
