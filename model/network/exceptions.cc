@@ -1,5 +1,6 @@
 #include "model/network/exceptions.h"
 
+#include <ATen/Parallel.h>
 #include <c10/util/Exception.h>
 
 #include <exception>
@@ -8,7 +9,6 @@
 #include "absl/strings/str_cat.h"
 
 namespace duet::network {
-
 absl::Status CatchExceptions(const std::function<absl::Status()>& work) {
   try {
     return work();
@@ -19,6 +19,16 @@ absl::Status CatchExceptions(const std::function<absl::Status()>& work) {
   } catch (const std::exception& error) {
     return absl::InternalError(error.what());
   }
+}
+
+absl::Status SetThreads(int threads) {
+  absl::Status status = CatchExceptions([threads] {
+    at::set_num_threads(threads);
+    return absl::OkStatus();
+  });
+  if (status.ok()) return status;
+  return absl::InternalError(absl::StrCat("cannot choose the number of threads: ", status.message(),
+                                          "; LibTorch reads /proc/cpuinfo: is it there?"));
 }
 
 }  // namespace duet::network

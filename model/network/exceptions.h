@@ -12,6 +12,11 @@ namespace duet::network {
 // RESOURCE_EXHAUSTED.
 absl::Status CatchExceptions(const std::function<absl::Status()>& work);
 
+// Sets the number of threads on which LibTorch runs one operation. Call it once, before any other
+// use of LibTorch. Errors: INTERNAL if LibTorch cannot identify the processor (it reads
+// /proc/cpuinfo).
+absl::Status SetThreads(int threads);
+
 }  // namespace duet::network
 
 #endif  // DUET_MODEL_NETWORK_EXCEPTIONS_H_

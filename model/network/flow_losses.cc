@@ -82,20 +82,6 @@ torch::Tensor SquaredBoneErrors(const torch::Tensor& predicted, const torch::Ten
   return MeanOverFrames(errors.square().mean(2), lengths);
 }
 
-torch::Tensor SquaredSlides(const torch::Tensor& predicted, const torch::Tensor& real,
-                            const torch::Tensor& lengths, const motion::JointPair& feet,
-                            double still) {
-  const auto moved = [&](const torch::Tensor& motion) {
-    return Differences(motion)
-        .square()
-        .unflatten(-1, {-1, 3})
-        .sum(-1)
-        .index_select(-1, Indices({feet.left, feet.right}, motion));
-  };
-  const torch::Tensor stands = (moved(real) < still * still).to(predicted.dtype());
-  return MeanOverFrames((moved(predicted) * stands).mean(2), lengths - 1);
-}
-
 torch::Tensor EnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
                            const torch::Tensor& lengths) {
   const int64_t count = answers.size(0);

@@ -24,13 +24,6 @@ torch::Tensor SquaredBoneErrors(const torch::Tensor& predicted, const torch::Ten
                                 const torch::Tensor& lengths,
                                 const std::vector<motion::Bone>& bones);
 
-// Mean over the valid frames and feet of the squared distance that a foot moves between successive
-// frames, counted only where the captured foot stands (moves less than `still`). Units: those of
-// `still`, squared.
-torch::Tensor SquaredSlides(const torch::Tensor& predicted, const torch::Tensor& real,
-                            const torch::Tensor& lengths, const motion::JointPair& feet,
-                            double still);
-
 // Energy score: compares the distribution of several answers to one clip with the real motion, one
 // draw of the wanted distribution. Mean over the valid frames of
 //

@@ -4,7 +4,7 @@
 #include <torch/torch.h>
 
 #include "absl/types/span.h"
-#include "model/checkpoint/flow_architecture.h"
+#include "model/checkpoint/architecture.h"
 #include "model/engine/network.h"
 
 namespace duet::network {

@@ -55,11 +55,6 @@ torch::Tensor L1Loss(const torch::Tensor& predicted, const torch::Tensor& real,
   return FrameMean((predicted - real).abs().sum(-1), Mask(real, lengths));
 }
 
-torch::Tensor L2Loss(const torch::Tensor& predicted, const torch::Tensor& real,
-                     const torch::Tensor& lengths) {
-  return FrameMean((predicted - real).square().sum(-1), Mask(real, lengths));
-}
-
 torch::Tensor NormLoss(const torch::Tensor& predicted, const torch::Tensor& real,
                        const torch::Tensor& lengths) {
   return FrameMean(Length(predicted - real), Mask(real, lengths));
@@ -76,16 +71,18 @@ torch::Tensor BoneLoss(const torch::Tensor& predicted, const torch::Tensor& real
 }
 
 torch::Tensor ContinuityLoss(const torch::Tensor& predicted, const torch::Tensor& lengths,
-                             const ContinuityOptions& options) {
+                             ContinuityForm form) {
   const torch::Tensor mask = Mask(predicted, lengths);
   const int64_t frames = predicted.size(1);
-  if (options.form == ContinuityForm::kPathLength) {
+  if (form == ContinuityForm::kPathLength) {
     return FrameMean(Moved(predicted, 1), mask.narrow(1, 1, frames - 1));
   }
-  if (frames <= options.gap) return torch::zeros({}, predicted.options());
-  const torch::Tensor near = Moved(predicted, 1).narrow(1, options.gap - 1, frames - options.gap);
-  const torch::Tensor hinge = (near - Moved(predicted, options.gap) + options.margin).clamp_min(0);
-  return FrameMean(hinge, mask.narrow(1, options.gap, frames - options.gap));
+  constexpr int64_t kGap = 2;
+  constexpr double kMargin = 0.1;  // metres
+  if (frames <= kGap) return torch::zeros({}, predicted.options());
+  const torch::Tensor near = Moved(predicted, 1).narrow(1, kGap - 1, frames - kGap);
+  const torch::Tensor hinge = (near - Moved(predicted, kGap) + kMargin).clamp_min(0);
+  return FrameMean(hinge, mask.narrow(1, kGap, frames - kGap));
 }
 
 torch::Tensor DiscriminatorLoss(const torch::Tensor& real_logits,

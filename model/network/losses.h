@@ -16,10 +16,6 @@ namespace duet::network {
 torch::Tensor L1Loss(const torch::Tensor& predicted, const torch::Tensor& real,
                      const torch::Tensor& lengths);
 
-// Mean over the valid frames of sum over the coordinates of (x^ - x)^2.
-torch::Tensor L2Loss(const torch::Tensor& predicted, const torch::Tensor& real,
-                     const torch::Tensor& lengths);
-
 // Mean over the valid frames of the Euclidean norm over all coordinates: the paper's AFD (Eq. 6).
 torch::Tensor NormLoss(const torch::Tensor& predicted, const torch::Tensor& real,
                        const torch::Tensor& lengths);
@@ -30,20 +26,14 @@ torch::Tensor BoneLoss(const torch::Tensor& predicted, const torch::Tensor& real
                        const torch::Tensor& lengths, const std::vector<motion::Bone>& bones);
 
 enum class ContinuityForm {
-  kHinge,      // sum_t [ |x^_t - x^_{t-1}| - |x^_t - x^_{t-gap}| + margin ]_+ (YXN17; the paper)
+  kHinge,      // sum_t [ |x^_t - x^_{t-1}| - |x^_t - x^_{t-2}| + 0.1 m ]_+ (YXN17; the paper)
   kPathLength  // sum_t |x^_t - x^_{t-1}|: what the released code executes
-};
-
-struct ContinuityOptions {
-  ContinuityForm form = ContinuityForm::kHinge;
-  int64_t gap = 2;
-  double margin = 0.1;
 };
 
 // Mean over the valid frames; |.| sums over the joints the distance that each moves.
 // Source: paper section 3.4 (L_c).
 torch::Tensor ContinuityLoss(const torch::Tensor& predicted, const torch::Tensor& lengths,
-                             const ContinuityOptions& options);
+                             ContinuityForm form);
 
 // The discriminator's loss: real motion in its class, synthesised motion in the last output.
 // Source: paper Eq. 4 in the semi-supervised form of Salimans et al. 2016. Shapes: logits

@@ -34,20 +34,6 @@ TEST(CapturesTest, SbuIsWhole) {
   EXPECT_EQ(split->test.size(), 81u);
 }
 
-TEST(CapturesTest, SbuFollowersStandWhereTheirDirectionPoints) {
-  const auto folder = test::FindData("sbu");
-  if (!folder) GTEST_SKIP() << test::kNoData;
-  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
-  ASSERT_TRUE(dataset.ok()) << dataset.status();
-  const int root = dataset->skeleton.root;
-  for (const Sequence& one : dataset->sequences) {
-    ASSERT_TRUE(one.partner_direction.has_value());
-    const motion::Vec3 across = one.pair.follower.at(0, root) - one.pair.leader.at(0, root);
-    // Within 45 degrees of it, or the axis is not the setup's.
-    EXPECT_GT(Dot(across, *one.partner_direction), 0.7f * std::hypot(across.x, across.z)) << one.id;
-  }
-}
-
 // The mean lean of every leader or every follower.
 motion::Lean LeanOfAll(const Dataset& dataset, bool leaders, bool as_captured) {
   std::vector<motion::Vec3> directions;
@@ -71,31 +57,6 @@ TEST(CapturesTest, PeopleStandUprightOnceLevelled) {
       EXPECT_LT(std::abs(LeanOfAll(*dataset, leaders, false).x), 1) << name << leaders;
       EXPECT_LT(std::abs(LeanOfAll(*dataset, leaders, false).z), 1) << name << leaders;
     }
-  }
-}
-
-TEST(CapturesTest, SetsStandUprightOnceLevelled) {
-  const auto folder = test::FindData("sbu");
-  if (!folder) GTEST_SKIP() << test::kNoData;
-  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
-  ASSERT_TRUE(dataset.ok()) << dataset.status();
-  std::map<std::string, std::vector<motion::Vec3>> directions, feet;
-  for (const Sequence& one : dataset->sequences) {
-    for (const motion::Clip* clip : {&one.pair.leader, &one.pair.follower}) {
-      for (const motion::Vec3& d : StandingDirections(dataset->skeleton, clip->poses)) {
-        directions[one.set].push_back(d);
-      }
-      for (const motion::Vec3& f : LowerFeet(dataset->skeleton, clip->poses)) {
-        feet[one.set].push_back(f);
-      }
-    }
-  }
-  ASSERT_EQ(directions.size(), 17u);
-  for (const auto& [set, of_set] : directions) {
-    // What is left is what these people do, which the set's vertical is not to follow to the end.
-    EXPECT_LT(std::abs(MeanLean(of_set).z), 1.5) << set;
-    EXPECT_LT(std::abs(MeanLean(of_set).x), 1.5) << set;
-    EXPECT_NEAR(HeightQuantile(feet[set], 0.25), 0, 0.001) << set;
   }
 }
 

@@ -61,30 +61,6 @@ TEST(DatasetLayoutTest, ReadsEveryField) {
   EXPECT_TRUE(layout->notes.empty());
 }
 
-TEST(DatasetTest, AnyOfTheClassesMayBeOneInWhichBodiesTouch) {
-  Dataset dataset;
-  dataset.classes = {"hug", "wave", "dance"};
-  dataset.touches = {true, false, true};
-  EXPECT_THAT(dataset.TouchingClasses(), ElementsAre("hug", "dance"));
-}
-
-// Whom the configurations named when they named classes.
-TEST(DatasetLayoutTest, TheCapturesKnowTheirHandedAndTouchingClasses) {
-  const auto names = [](const DatasetLayout& layout, bool ClassLayout::*property) {
-    std::vector<std::string> found;
-    for (const ClassLayout& one : layout.classes) {
-      if (one.*property) found.push_back(one.name);
-    }
-    return found;
-  };
-  EXPECT_THAT(names(SbuLayout(), &ClassLayout::handed),
-              ElementsAre("shake_hands", "exchange_object"));
-  EXPECT_THAT(names(SbuLayout(), &ClassLayout::touches), ElementsAre("hug"));
-  EXPECT_THAT(names(K3hiLayout(), &ClassLayout::handed),
-              ElementsAre("exchange_object", "point", "shake_hands"));
-  EXPECT_THAT(names(K3hiLayout(), &ClassLayout::touches), ElementsAre());
-}
-
 // The skeleton of 20 joints of the second data set of the paper, as its author would write it.
 Json TwentyJoints() {
   Json json = Complete();
@@ -119,16 +95,6 @@ TEST(DatasetLayoutTest, FindsPartsRootHipsAndFeetThatAreLeftOut) {
   EXPECT_EQ(layout->notes[0], "root: Hips (no bone leads to it)");
 }
 
-TEST(DatasetLayoutTest, TakesWhatIsSaidBesideLeftOutParts) {
-  Json json = TwentyJoints();
-  json["skeleton"]["root"] = "Hips";
-  json["skeleton"]["left_foot"] = "LeftFoot";
-  json["skeleton"]["right_foot"] = "RightToe";
-  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
-  ASSERT_TRUE(layout.ok()) << layout.status();
-  EXPECT_EQ(layout->skeleton.feet, (motion::JointPair{15, 19}));
-}
-
 TEST(DatasetLayoutTest, SaysWhatOfASkeletonCannotBeFoundAndHowToSayIt) {
   Json json = TwentyJoints();
   json["skeleton"]["joint_names"][6] = "wing";
@@ -141,34 +107,6 @@ TEST(DatasetLayoutTest, SaysWhatOfASkeletonCannotBeFoundAndHowToSayIt) {
               HasSubstr("skeleton.root: expected the joint that the bones start from, got none"));
   json["skeleton"]["root"] = "Hips";
   EXPECT_THAT(ErrorOf(json), HasSubstr("skeleton.bones: expected 19 to connect 20 joints, got 18"));
-}
-
-TEST(DatasetLayoutTest, OwnDataIsLevelUnlessItSaysOtherwise) {
-  Json json = Complete();
-  EXPECT_FALSE(ParseDatasetLayout(json.dump())->level);
-  json["level"] = true;
-  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
-  ASSERT_TRUE(layout.ok()) << layout.status();
-  EXPECT_TRUE(layout->level);
-}
-
-TEST(DatasetLayoutTest, PeopleMayStandAlongAnAxis) {
-  Json json = Complete();
-  EXPECT_FALSE(ParseDatasetLayout(json.dump())->people_axis.has_value());
-  json["people_axis"] = "z";
-  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
-  ASSERT_TRUE(layout.ok()) << layout.status();
-  EXPECT_EQ(layout->people_axis, (motion::Vec3{0, 0, 1}));
-}
-
-TEST(DatasetLayoutTest, LevellingNeedsFeet) {
-  Json json = Complete();
-  json["skeleton"].erase("left_foot");
-  json["skeleton"].erase("right_foot");
-  json["level"] = true;
-  EXPECT_THAT(ErrorOf(json), HasSubstr("level: expected skeleton.left_foot"));
-  json["level"] = false;
-  EXPECT_TRUE(ParseDatasetLayout(json.dump()).ok());
 }
 
 TEST(DatasetLayoutTest, NamesTheFieldThatIsMissing) {

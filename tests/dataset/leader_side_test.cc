@@ -58,12 +58,6 @@ TEST(LeaderByMotionTest, ThePeakRelativeToTheRootDecides) {
   EXPECT_EQ(LeaderByMotion(Walker(0.2f), Walker(-0.5f), 0, {1}), LeaderSide::kRight);
 }
 
-TEST(LeaderByMotionTest, WalkingAloneIsNoReach) {
-  // The right one walks as far as the left, but only the left one moves its hand.
-  EXPECT_EQ(LeaderByMotion(Walker(0.1f), Walker(0), 0, {1}), LeaderSide::kLeft);
-  EXPECT_EQ(LeaderByMotion(Walker(0), Walker(0.1f), 0, {1}), LeaderSide::kRight);
-}
-
 TEST(LeaderByMotionTest, WhereSomebodyStandsIsNoReach) {
   EXPECT_EQ(LeaderByMotion(Walker(0.1f), Walker(0, 9), 0, {1}), LeaderSide::kLeft);
   EXPECT_EQ(LeaderByMotion(Walker(0, 9), Walker(0.1f), 0, {1}), LeaderSide::kRight);

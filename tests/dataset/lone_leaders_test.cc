@@ -76,13 +76,6 @@ TEST_F(LoneLeadersTest, AFileThatIsNoMotionIsNamed) {
                                HasSubstr("b.json: frames: expected at least 2, got 1")));
 }
 
-TEST_F(LoneLeadersTest, AMissingOrAnEmptyFolderIsNotFound) {
-  EXPECT_THAT(Read(), StatusIs(absl::StatusCode::kNotFound,
-                               HasSubstr("expected motion files of leaders, got none")));
-  EXPECT_THAT(ReadLoneLeaders(folder_ / "absent", motion::SbuSkeleton(), 15),
-              StatusIs(absl::StatusCode::kNotFound, HasSubstr("absent: cannot be listed")));
-}
-
 TEST_F(LoneLeadersTest, DigestDependsOnNamesAndMotions) {
   Write("a.json", JsonMotion(31));
   const auto first = Read(), again = Read();

@@ -58,25 +58,6 @@ TEST(ReadDatasetTest, ReadsSbu) {
   EXPECT_EQ(punch.pair.follower.frame_count(), 4);
 }
 
-TEST(ReadDatasetTest, TellsWhereItsLeadersComeFrom) {
-  CaptureFolder folder;
-  for (const char* number : {"001", "002", "003"}) {
-    folder.Write(absl::StrCat("s01s02/04/", number, "/skeleton_pos.txt"), RightReaches());
-  }
-  folder.Write("index.tsv",
-               "path\tleader_side\tleader_source\n"
-               "s01s02/04/001/skeleton_pos.txt\tleft\tannotated\n"
-               "s01s02/04/002/skeleton_pos.txt\tright\tguess_early_motion\n");
-  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
-  ASSERT_TRUE(dataset.ok()) << dataset.status();
-  EXPECT_EQ(dataset->sequences[0].leader_source, "index");
-  EXPECT_EQ(dataset->sequences[1].leader_source, "guess");
-  EXPECT_EQ(dataset->sequences[2].leader_source, "motion");
-  EXPECT_EQ(dataset->sequences[0].rule_agrees, false);
-  EXPECT_EQ(dataset->sequences[1].rule_agrees, true);
-  EXPECT_EQ(dataset->sequences[2].rule_agrees, true);
-}
-
 TEST(ReadDatasetTest, TellsOnWhichSideTheFollowerStands) {
   // Raw x grows towards world -x. In one file the follower is at the larger raw x, in the other at
   // the smaller; by how much, and how far along the other axes, does not matter.
@@ -168,26 +149,6 @@ TEST(ReadDatasetTest, ATimeLineNamesTheSequences) {
   EXPECT_EQ(take.labels[1].end, 2);
 }
 
-TEST(ReadDatasetTest, ATimeLineEndsWithItsSequence) {
-  CaptureFolder folder;
-  folder.Write("dataset.json", kOwnLayout);
-  folder.Write("takes/01.txt", kTwoFrames);
-  folder.Write("index.tsv", "path\tleader_side\ntakes/01.txt\tright\n");
-  folder.Write("labels.tsv",
-               "path\tclass\tfrom_seconds\tto_seconds\ntakes/01.txt\tkick\t0\t0.05\n");
-  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
-              AllOf(HasSubstr("to_seconds of class kick of "), HasSubstr("takes/01.txt: expected"),
-                    HasSubstr("got 0.05")));
-}
-
-TEST(ReadDatasetTest, ATimeLineNamesAFileThatExists) {
-  CaptureFolder folder;
-  folder.Write("dataset.json", kOwnLayout);
-  folder.Write("labels.tsv",
-               "path\tclass\tfrom_seconds\tto_seconds\ntakes/02.txt\tkick\t0\t0.05\n");
-  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("takes/02.txt"));
-}
-
 TEST(ReadDatasetTest, SetsOfDuetBatchAreReadAsTheirLayout) {
   CaptureFolder folder;
   folder.Write("dataset.json", R"({"format": "duet-batch", "format_version": 1})");
@@ -197,15 +158,6 @@ TEST(ReadDatasetTest, SetsOfDuetBatchAreReadAsTheirLayout) {
   ASSERT_TRUE(dataset.ok()) << dataset.status();
   EXPECT_EQ(dataset->name, K3hiLayout().name);
   EXPECT_EQ(dataset->sequences.size(), 1u);
-}
-
-TEST(ReadDatasetTest, OwnDataWithoutEffectorsNeedsTheIndex) {
-  CaptureFolder folder;
-  folder.Write("dataset.json", kOwnLayout);
-  const std::string still = ",1,0,0,2,0,0,3,0,0,4,0,0,5,0,0,6,0,0\n";
-  folder.Write("punch/a.txt", "1" + still + "2" + still);
-  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
-              AllOf(HasSubstr("punch/a.txt"), HasSubstr("leader_side")));
 }
 
 TEST(ReadDatasetTest, NamesFileAndLineOfABadCapture) {
@@ -238,13 +190,6 @@ TEST(ReadDatasetTest, RejectsAnIndexThatNamesAnAbsentFile) {
   folder.Write("index.tsv", "path\tleader_side\ns01s02/03/01/skeleton_pos.txt\tleft\n");
   EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
               AllOf(HasSubstr("index.tsv: line 2"), HasSubstr("path: expected a file below")));
-}
-
-TEST(ReadDatasetTest, RejectsASequenceFolderWithoutItsFile) {
-  CaptureFolder folder;
-  std::filesystem::create_directories(folder.path() / "s01s02/03/001");
-  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound),
-              HasSubstr("s01s02/03/001/skeleton_pos.txt"));
 }
 
 TEST(ReadDatasetTest, RejectsAFolderThatIsNoDataSet) {

@@ -56,11 +56,6 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLine{std::string(kHeader) + "a.txt\tturn\t2\t2.01\n",
                             "expected at least one frame after from_seconds 2, got 2.01"}));
 
-TEST(LongestClassTest, AddsUpTheSpansOfAClass) {
-  EXPECT_EQ(LongestClass({{0, 0, 5}, {1, 5, 9}, {1, 20, 22}}), 1);
-  EXPECT_EQ(LongestClass({}), -1);
-}
-
 // Frame t of a take has its only joint at x = t (leader) and x = 100 + t (follower).
 Sequence Take(int frames) {
   Sequence take;
@@ -87,16 +82,6 @@ TEST(CutIntoWindowsTest, TheLastWindowEndsWithTheSequence) {
     EXPECT_THAT(windows[i].subjects, ElementsAre("take"));
   }
   EXPECT_EQ(windows[2].id, "take.txt#6");
-}
-
-TEST(CutIntoWindowsTest, AWindowThatFitsExactlyIsNotRepeated) {
-  EXPECT_EQ(CutIntoWindows(Take(10), 4, 3).size(), 3u);
-}
-
-TEST(CutIntoWindowsTest, AShortSequenceStaysWhole) {
-  const std::vector<Sequence> windows = CutIntoWindows(Take(4), 4, 1);
-  ASSERT_EQ(windows.size(), 1u);
-  EXPECT_EQ(windows[0].id, "take.txt");
 }
 
 TEST(CutIntoWindowsTest, AWindowHasItsPartOfTheTimeLine) {

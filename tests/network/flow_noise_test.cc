@@ -38,15 +38,6 @@ TEST(SourceNoiseTest, HasTheTrainingOffsetsDeviationAndIsSmooth) {
   EXPECT_NEAR(ends.item<float>(), 4 * options.constant_share, 0.5);
 }
 
-TEST(SourceNoiseTest, GrowsFromTheLastKnownFrame) {
-  checkpoint::FlowArchitecture::Noise options = test::SmallFlow().noise;
-  options.white = 0;
-  const torch::Tensor deviation = Deviation(SourceNoise(options, Roots(), Told(4), Numbers()));
-  EXPECT_NEAR(deviation[3].item<float>(), 1.0 / 8, 0.02);
-  EXPECT_NEAR(deviation[7].item<float>(), 5.0 / 8, 0.06);
-  EXPECT_NEAR(deviation[15].item<float>(), 1, 0.08);
-}
-
 TEST(SourceNoiseTest, FramesDoNotDependOnLaterFrames) {
   const NoiseNumbers all = Numbers();
   const NoiseNumbers first = {all.smooth.narrow(1, 0, 7), all.white.narrow(1, 0, 7)};
@@ -55,19 +46,6 @@ TEST(SourceNoiseTest, FramesDoNotDependOnLaterFrames) {
     EXPECT_TRUE(torch::allclose(SourceNoise(options, Roots(), Told(told), all).narrow(1, 0, 7),
                                 SourceNoise(options, Roots(), Told(told), first), 1e-4, 1e-5));
   }
-}
-
-TEST(DrawNoiseTest, DependsOnlyOnTheSeedOfEachWindow) {
-  const checkpoint::Manifest manifest = SmallFlowManifest();
-  std::vector<engine::NetworkInput> inputs = {FlowWindow(manifest, 9), FlowWindow(manifest, 4)};
-  inputs[0].sampling.seed = 11;
-  inputs[1].sampling.seed = 12;
-  const NoiseNumbers both = DrawNoise(inputs, 4);
-  const NoiseNumbers second = DrawNoise({&inputs[1], 1}, 4);
-  EXPECT_TRUE(torch::equal(both.smooth[1].narrow(0, 0, 4), second.smooth[0]));
-  EXPECT_TRUE(torch::equal(both.white[1].narrow(0, 0, 4), second.white[0]));
-  EXPECT_FALSE(torch::equal(both.smooth[0].narrow(0, 0, 4), second.smooth[0]));
-  EXPECT_FALSE(torch::equal(second.smooth[0], second.white[0]));
 }
 
 TEST(DrawNoiseTest, AFrameOfAnEndlessMotionHasTheSameNoiseInEveryWindow) {

@@ -30,14 +30,6 @@ class FlowSamplerTest : public ::testing::Test {
   FlowGenerator generator_ = RandomFlowGenerator(manifest_);
 };
 
-TEST_F(FlowSamplerTest, AnswersEveryFrameOfEveryWindow) {
-  const torch::Tensor answer =
-      Answer({FlowWindow(manifest_, 9), FlowWindow(manifest_, 5), FlowWindow(manifest_, 12)});
-  const int64_t width = 3 * manifest_.model.skeleton.joint_count();
-  EXPECT_EQ(answer.sizes(), (std::vector<int64_t>{3, 12, width}));
-  EXPECT_TRUE(torch::isfinite(answer).all().item<bool>());
-}
-
 TEST_F(FlowSamplerTest, WindowDoesNotDependOnItsBatch) {
   engine::NetworkInput mixed = FlowWindow(manifest_, 5, 1, 0.5f);
   mixed.labels[0] = 0.25f;
@@ -95,20 +87,6 @@ TEST_F(FlowSamplerTest, KnownFramesAreExactAndTheNextOnesContinueThem) {
   }
 }
 
-TEST_F(FlowSamplerTest, StartWithOnlyTheRootMovesTheAnswerThere) {
-  engine::NetworkInput near = FlowWindow(manifest_, 10), far = near;
-  near.start = engine::FollowerStart{{0, 0, -1}, {}};
-  far.start = engine::FollowerStart{{0, 0, -3}, {}};
-  const FlowInput input = MakeFlowInput(manifest_, generator_->base_poses(),
-                                        std::vector<engine::NetworkInput>{near, far});
-  const int64_t root = 3 * manifest_.model.skeleton.root;
-  EXPECT_NEAR(input.base[0][root + 2].item<float>(), -1, kRounding);
-  EXPECT_NEAR(input.base[1][root + 2].item<float>(), -3, kRounding);
-  EXPECT_NEAR(Apart(input.base[0], input.base[1]), 2, kRounding);
-  EXPECT_EQ(input.known_count.sum().item<int64_t>(), 0);
-  EXPECT_GT(Apart(Answer(near), Answer(far)), 0.1);
-}
-
 TEST_F(FlowSamplerTest, BaseIsTheWeightedMeanPoseOfTheClasses) {
   const torch::Tensor& poses = generator_->base_poses();
   const torch::Tensor mean = poses.mean(0);
@@ -119,17 +97,6 @@ TEST_F(FlowSamplerTest, BaseIsTheWeightedMeanPoseOfTheClasses) {
   EXPECT_LT(Apart(base(FlowWindow(manifest_, 6, 1, 0)), mean), kRounding);
   EXPECT_LT(Apart(base(FlowWindow(manifest_, 6, 2, -0.5f)), mean - 0.5 * (poses[2] - mean)),
             kRounding);
-}
-
-TEST_F(FlowSamplerTest, GuidanceHasNoEffectWithoutALabel) {
-  const engine::NetworkInput input = FlowWindow(manifest_, 8, 0, 0);
-  const torch::Tensor answer = Answer(input);
-  test::FlowOf(manifest_).guidance = 4;
-  EXPECT_TRUE(torch::equal(Answer(input), answer));
-  const engine::NetworkInput labelled = FlowWindow(manifest_, 8, 0, 1);
-  const torch::Tensor strong = Answer(labelled);
-  test::FlowOf(manifest_).guidance = 1;
-  EXPECT_GT(Apart(Answer(labelled), strong), 0.01);
 }
 
 TEST_F(FlowSamplerTest, LabelsMayDifferFromFrameToFrame) {
@@ -147,15 +114,6 @@ TEST_F(FlowSamplerTest, LabelsMayDifferFromFrameToFrame) {
   EXPECT_TRUE(torch::equal(factors[1] > 0, torch::arange(8) < 4));
   EXPECT_TRUE(torch::equal(factors[2] > 0, torch::arange(8) >= 4));
   EXPECT_EQ(factors.max().item<float>(), 1.5f);
-}
-
-TEST(GuidanceTermsTest, OneClassWithoutGuidanceNeedsOneTerm) {
-  torch::Tensor labels = torch::zeros({2, 6, 3});
-  labels[0].select(1, 1).fill_(1);
-  labels[1].narrow(0, 0, 4).select(1, 2).fill_(1);  // two frames are padding
-  const GuidanceTerms terms = MakeGuidanceTerms(labels, torch::tensor({6, 4}), 1);
-  EXPECT_TRUE(torch::equal(terms.windows, torch::tensor({int64_t{0}, int64_t{1}})));
-  EXPECT_TRUE(torch::equal(terms.labels.argmax(1), torch::tensor({int64_t{1}, int64_t{2}})));
 }
 
 TEST(GuidanceTermsTest, GuidanceDoesNotScaleNegativeWeights) {

@@ -72,12 +72,5 @@ TEST(LstmSequenceTest, FloatKernelsAreAccurate) {
   }
 }
 
-TEST(LstmSequenceTest, SaturatedGatesStayFinite) {
-  Problem p = MakeProblem(torch::kFloat32);
-  const torch::Tensor gates = p.gates.detach() * 1e4;
-  const auto out = LstmSequence(gates, p.weight, p.hidden, p.cell);
-  EXPECT_TRUE(torch::isfinite(out.first).all().item<bool>());
-}
-
 }  // namespace
 }  // namespace duet::network
