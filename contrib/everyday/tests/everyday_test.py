@@ -219,5 +219,20 @@ class MakeEverydayTest(unittest.TestCase):
                 self.assertIn(message, output)
 
 
+class ConfigurationsTest(unittest.TestCase):
+    def test_change_settings_that_the_trainer_has(self):
+        named = Path(__file__).resolve().parents[3] / "model/training/configs"
+        files = sorted((Path(__file__).resolve().parents[1] / "configs").glob("*.json"))
+        self.assertEqual([file.stem for file in files], ["first", "second", "third"])
+        for file in files:
+            changed = json.loads(file.read_text(encoding="utf-8"))
+            self.assertTrue((named / f"{changed['base']}.json").exists())
+            for path in changed["set"]:
+                settings = json.loads((named / "flow.json").read_text(encoding="utf-8"))
+                for key in path.split("."):
+                    self.assertIn(key, settings, f"{file.name}: {path}")
+                    settings = settings[key]
+
+
 if __name__ == "__main__":
     unittest.main()
