@@ -26,10 +26,6 @@ void ScaleBodies(int root, double leader_scale, double follower_scale, motion::C
   }
 }
 
-void ShiftFollower(motion::Vec3 by, motion::ClipPair* pair) {
-  for (motion::Vec3& point : pair->follower.poses.all()) point += by;
-}
-
 void Turn(double radians, motion::ClipPair* pair) {
   for (motion::Vec3& point : pair->leader.poses.all()) point = RotateY(point, radians);
   for (motion::Vec3& point : pair->follower.poses.all()) point = RotateY(point, radians);
@@ -112,12 +108,6 @@ void Warp(double speed, int longest, dataset::Sequence* sequence) {
   }
 }
 
-motion::Vec3 Horizontal(motion::Vec3 v) {
-  const motion::Vec3 flat{v.x, 0, v.z};
-  const float length = Norm(flat);
-  return length > 0 ? flat / length : flat;
-}
-
 }  // namespace
 
 std::vector<int> MirroredJoints(const motion::Skeleton& skeleton) {
@@ -155,9 +145,8 @@ dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequen
                           const TrainingOptions::Augmentation& options, base::Random* random) {
   dataset::Sequence variant = sequence;
   const size_t interaction = static_cast<size_t>(sequence.interaction_class);
-  const double mirror = dataset.handed[interaction] ? options.mirror_handed : options.mirror;
   if (dataset.symmetric[interaction] && random->Chance(options.swap_roles)) SwapRoles(&variant);
-  if (mirror > 0 && random->Chance(mirror)) {
+  if (!dataset.handed[interaction] && options.mirror > 0 && random->Chance(options.mirror)) {
     Mirror(MirroredJoints(dataset.skeleton), &variant);
   }
   motion::ClipPair* pair = &variant.pair;
@@ -170,12 +159,6 @@ dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequen
     const double leader = 1 + random->Uniform(-options.body_scale, options.body_scale);
     const double follower = 1 + random->Uniform(-options.body_scale, options.body_scale);
     ScaleBodies(dataset.skeleton.root, leader, follower, pair);
-  }
-  if (options.root_distance > 0) {
-    const int root = dataset.skeleton.root;
-    ShiftFollower(Horizontal(pair->follower.at(0, root) - pair->leader.at(0, root)) *
-                      static_cast<float>(random->Normal(options.root_distance)),
-                  pair);
   }
   if (options.yaw > 0)
     Turn(random->Normal(options.yaw), pair);  // partner_direction does not change

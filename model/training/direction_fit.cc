@@ -7,9 +7,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "model/base/angle.h"
-#include "model/dataset/partner_direction.h"
-#include "model/engine/window_standardisation.h"
 #include "model/motion/standardise.h"
 #include "model/training/augment.h"
 
@@ -32,11 +29,20 @@ struct Sample {
   int interaction_class = 0;
 };
 
+// The horizontal direction from leader to follower, of any length: that of the capture's setup if
+// it defines one, otherwise from root to root in the first frame.
+motion::Vec3 PartnerDirection(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
+  if (sequence.partner_direction) return *sequence.partner_direction;
+  const motion::Vec3 toward =
+      sequence.pair.follower.at(0, skeleton.root) - sequence.pair.leader.at(0, skeleton.root);
+  return {toward.x, 0, toward.z};
+}
+
 void AddSample(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                std::vector<Sample>* samples) {
   const motion::Poses& leader = sequence.pair.leader.poses;
   std::optional<std::vector<double>> features = engine::DirectionFeatures(skeleton, leader);
-  const motion::Vec3 toward = dataset::PartnerDirection(skeleton, sequence);
+  const motion::Vec3 toward = PartnerDirection(skeleton, sequence);
   if (!features || Norm(toward) == 0) return;
   const double hips = motion::Standardisation(skeleton, leader).yaw();
   const motion::Vec3 seen = RotateY(toward / Norm(toward), hips);
@@ -155,27 +161,6 @@ std::optional<engine::DirectionRegression> FitPartnerDirection(const dataset::Da
   engine::DirectionCorrection& correction = regression.correction.emplace();
   correction.classes = Fit(mistaken, dataset.class_count(), &correction);
   return regression;
-}
-
-std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::vector<int>& tests,
-                                    const std::optional<engine::DirectionRegression>& regression) {
-  std::vector<double> errors;
-  for (const int test : tests) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<std::size_t>(test)];
-    engine::SynthesisWindow window;
-    window.leader = sequence.pair.leader.poses;
-    if (regression) {
-      std::vector<float> label(dataset.classes.size());
-      label[static_cast<std::size_t>(sequence.interaction_class)] = 1;
-      window.partner_direction =
-          EstimatePartnerDirection(*regression, dataset.skeleton, window.leader, label);
-    }
-    const double expected = WindowStandardisation(dataset.skeleton, window).yaw();
-    const double actual = motion::FacingYaw(PartnerDirection(dataset.skeleton, sequence));
-    errors.push_back(base::kDegreesPerRadian *
-                     std::abs(std::remainder(expected - actual, 2 * M_PI)));
-  }
-  return errors;
 }
 
 }  // namespace duet::training

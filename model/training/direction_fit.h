@@ -18,12 +18,6 @@ namespace duet::training {
 std::optional<engine::DirectionRegression> FitPartnerDirection(const dataset::Dataset& dataset,
                                                                const std::vector<int>& train);
 
-// Errors of the partner's estimated direction, degrees, 0 to 180: from a model's regression, or,
-// without one, from the leader's hips. Shapes: returns [tests]. Requires a regression for the data
-// set's skeleton.
-std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::vector<int>& tests,
-                                    const std::optional<engine::DirectionRegression>& regression);
-
 }  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_DIRECTION_FIT_H_

@@ -1,11 +1,15 @@
 #include "model/training/epoch_trainer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/training/run_identity.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 
 namespace duet::training {
 namespace {
@@ -17,6 +21,18 @@ std::vector<torch::Tensor> Copies(const std::vector<torch::Tensor>& tensors) {
   std::vector<torch::Tensor> copies;
   for (const torch::Tensor& tensor : tensors) copies.push_back(tensor.detach().clone());
   return copies;
+}
+
+// The first line of an identity that is not that of a saved state.
+std::string FirstDifference(const std::string& saved, const std::string& now) {
+  const std::vector<std::string> before = absl::StrSplit(saved, '\n');
+  const std::vector<std::string> after = absl::StrSplit(now, '\n');
+  size_t i = 0;
+  while (i + 1 < std::min(before.size(), after.size()) && before[i] == after[i]) ++i;
+  const auto shown = [](absl::string_view line) {
+    return absl::StripSuffix(absl::StripAsciiWhitespace(line), ",");  // of JSON
+  };
+  return absl::StrCat("expected ", shown(before[i]), ", got ", shown(after[i]));
 }
 
 void CopyInto(const std::vector<torch::Tensor>& from, const std::vector<torch::Tensor>& to) {
@@ -40,12 +56,6 @@ void EpochTrainer::Begin(torch::nn::Module* generator) {
   generator_ = generator;
   average_ = Copies(generator->parameters());
   best_ = Copies(generator->parameters());
-}
-
-bool EpochTrainer::Finished() const {
-  if (epoch_ >= options_.epochs) return true;
-  const bool may_stop = !validation_.empty() && options_.validation.patience > 0;
-  return may_stop && epoch_ - best_epoch_ >= options_.validation.patience;
 }
 
 absl::Status EpochTrainer::UseDevice(const std::string& device) {
@@ -84,14 +94,13 @@ EpochReport EpochTrainer::RunEpoch() {
   report.validation_afd_pose = manifest_.model.accepts_follower_start
                                    ? Validate(StartKnowledge::kPose)
                                    : std::numeric_limits<double>::quiet_NaN();
-  if (!takes_.empty()) WithAverage([&] { report.error_by_position = TakeErrors(takes_); });
   Choose(report.validation_afd);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
 }
 
 void EpochTrainer::Choose(double afd) {
-  // Until an epoch may result, the last one stands in, and patience does not begin.
+  // Until an epoch may result, the last one stands in.
   const bool chooses = !validation_.empty() && MayBeBest(epoch_ - 1);
   if (chooses && !(afd < best_afd_)) return;
   if (chooses) best_afd_ = afd;
@@ -127,11 +136,12 @@ void EpochTrainer::CopyBest(torch::nn::Module* generator) const {
   generator->eval();
 }
 
-// A saved state is only valid for a run with the same identity.
+// A saved state is only valid for a run with the same identity: settings, manifest and sequences.
 std::string EpochTrainer::Identity() const {
-  return RunIdentity(SerializeManifest(manifest_), Describe(options_),
-                     absl::StrCat(dataset_.name, " train ", absl::StrJoin(train_, ","),
-                                  " validation ", absl::StrJoin(validation_, ",")));
+  return absl::StrCat(absl::StrJoin(Describe(options_), "\n", absl::PairFormatter("=")), "\n",
+                      SerializeManifest(manifest_), "data set: ", dataset_.name,
+                      "\ntraining sequences: ", absl::StrJoin(train_, ","),
+                      "\nvalidation sequences: ", absl::StrJoin(validation_, ","));
 }
 
 std::vector<std::pair<std::string, torch::Tensor>> EpochTrainer::StateTensors() {
@@ -186,7 +196,7 @@ absl::Status EpochTrainer::LoadState(const std::filesystem::path& file) {
     if (value.toStringRef() != Identity()) {
       return absl::FailedPreconditionError(
           absl::StrCat(file.string(), ": was begun with other options or data: ",
-                       DescribeIdentityChange(value.toStringRef(), Identity()),
+                       FirstDifference(value.toStringRef(), Identity()),
                        "; use the same to resume it, or choose another folder"));
     }
     torch::NoGradGuard no_grad;

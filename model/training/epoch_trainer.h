@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/types/span.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/dataset/dataset.h"
-#include "model/training/example.h"
 #include "model/training/options.h"
+#include "model/training/sampler.h"
 
 namespace duet::training {
 
@@ -32,8 +31,6 @@ struct EpochReport {
   bool whole_answers = false;
   double validation_afd = 0;       // metres, without a follower start
   double validation_afd_pose = 0;  // with the follower's first pose; NaN if the model accepts none
-  // Of whole takes (take_errors.h), metres; empty unless takes are validated.
-  std::vector<double> error_by_position;
   double seconds = 0;
 };
 
@@ -55,20 +52,15 @@ class EpochTrainer {
   virtual int64_t steps_per_epoch() const = 0;
   // Number of completed epochs.
   int64_t epoch() const { return epoch_; }
-  // True when all epochs are done or validation has stopped improving.
-  bool Finished() const;
+  bool Finished() const { return epoch_ >= options_.epochs; }
 
-  // Trains on a device of LibTorch: "cpu" or "cuda". INVALID_ARGUMENT if the method cannot.
-  // Requires that the device exists and that nothing else was called before.
+  // Trains on a device of LibTorch: "cpu" or "cuda". INVALID_ARGUMENT if the method
+  // cannot, FAILED_PRECONDITION if LibTorch cannot. Requires that nothing else was called before.
   virtual absl::Status UseDevice(const std::string& device);
 
   // Begins with the weights of a checkpoint instead of random ones. INVALID_ARGUMENT names a tensor
   // that is missing or has another shape. Requires that no epoch was run.
   absl::Status StartFrom(const checkpoint::Checkpoint& checkpoint);
-
-  // Also reports the errors in these whole takes after every epoch, if the method trains on windows
-  // of takes. `takes` must outlive the trainer.
-  void ValidateTakes(absl::Span<const dataset::Sequence> takes) { takes_ = takes; }
 
   EpochReport RunEpoch();
 
@@ -104,10 +96,6 @@ class EpochTrainer {
   // The error of the generator's answer to a captured example: AFD, metres.
   virtual double ValidationError(const Example& example) = 0;
   // State to save and restore in addition to the generator, its average and the best one.
-  // The errors of the typical answers to whole takes, by position (take_errors.h).
-  virtual std::vector<double> TakeErrors(absl::Span<const dataset::Sequence> /*takes*/) {
-    return {};
-  }
   virtual std::vector<std::pair<std::string, torch::Tensor>> MoreTensors() { return {}; }
   virtual std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() = 0;
 
@@ -132,7 +120,6 @@ class EpochTrainer {
   std::string Identity() const;
   std::vector<std::pair<std::string, torch::Tensor>> StateTensors();
 
-  absl::Span<const dataset::Sequence> takes_;
   torch::nn::Module* generator_ = nullptr;
   std::vector<torch::Tensor> average_;  // of the generator's parameters
   std::vector<torch::Tensor> best_;     // parameters of the best validated epoch

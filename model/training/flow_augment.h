@@ -9,7 +9,7 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/training/flow_batches.h"
-#include "model/training/flow_training.h"
+#include "model/training/options.h"
 
 // Changes to the examples of the sampling generator: histories and leaders as the generator meets
 // them in long clips and live sessions.

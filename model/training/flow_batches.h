@@ -6,7 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "model/network/flow_input.h"
+#include "model/checkpoint/manifest.h"
+#include "model/dataset/dataset.h"
+#include "model/network/flow_generator.h"
 #include "model/training/sampler.h"
 
 namespace duet::training {
@@ -45,6 +47,20 @@ FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dat
 // Shapes: base_poses [C, 3 J]. Requires a FlowTraining.
 FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
                         const std::vector<FlowExample>& examples);
+
+// The tensors of the sampling generator that are measured on the training followers, each of them
+// counted as captured and mirrored.
+struct FlowStatistics {
+  torch::Tensor base_poses;  // [C, 3 J] mean pose of each class, metres
+  torch::Tensor
+      noise_roots;  // [2, 3 J, 3 J] symmetric roots of the mean square of the offsets, in
+                    // offset_scale metres: from the class's mean pose, from the first pose
+};
+
+// Requires a FlowArchitecture. `smoothing`: see FlowTraining::target_smoothing.
+FlowStatistics MeasureFollowers(const checkpoint::Manifest& manifest,
+                                const dataset::Dataset& dataset, const std::vector<int>& train,
+                                double smoothing);
 
 }  // namespace duet::training
 

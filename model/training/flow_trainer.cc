@@ -1,8 +1,8 @@
 #include "model/training/flow_trainer.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "absl/strings/str_cat.h"
 #include "model/motion/skeleton.h"
 #include "model/network/batch.h"
 #include "model/network/flow_losses.h"
@@ -11,8 +11,7 @@
 #include "model/network/losses.h"
 #include "model/network/parameters.h"
 #include "model/training/flow_augment.h"
-#include "model/training/flow_statistics.h"
-#include "model/training/take_errors.h"
+#include "model/training/flow_batches.h"
 
 namespace duet::training {
 namespace {
@@ -55,6 +54,12 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
 }
 
 absl::Status FlowTrainer::UseDevice(const std::string& device) {
+  if (device != "cpu" && !torch::cuda::is_available()) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "device: expected one that LibTorch can use (cpu; cuda if LibTorch was built with it and "
+        "finds an accelerator), got ",
+        device));
+  }
   generator_->to(torch::Device(device));
   Begin(generator_.get());
   return absl::OkStatus();
@@ -73,13 +78,6 @@ void FlowTrainer::AddBodyScores(const FlowBatch& batch, const torch::Tensor& ans
   const torch::Tensor& lengths = batch.input.lengths;
   const motion::Skeleton& skeleton = manifest_.model.skeleton;
   const torch::Tensor base = batch.input.base.unsqueeze(1) / architecture_.offset_scale;
-  if (energy.bone_weight > 0) {
-    const torch::Tensor all = (answers + base).flatten(0, 1);
-    const torch::Tensor real = (batch.target + base).repeat({energy.answers, 1, 1});
-    add(energy.bone_weight,
-        network::SquaredBoneErrors(all, real, lengths.repeat({energy.answers}), skeleton.bones),
-        &report->bone);
-  }
   if (energy.feet_weight > 0 && skeleton.feet) {
     const auto motions = [&](const torch::Tensor& motion) {
       return network::FootMotions(motion, *skeleton.feet, StillPerFrame());
@@ -151,11 +149,6 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
                                    manifest_.model.skeleton.bones),
         &report->bone);
   }
-  if (flow_.slide_weight > 0 && manifest_.model.skeleton.feet) {
-    losses = losses + flow_.slide_weight * network::SquaredSlides(predicted, batch.target, lengths,
-                                                                  *manifest_.model.skeleton.feet,
-                                                                  StillPerFrame());
-  }
   const torch::Tensor total = (losses / (1 - times).clamp_min(flow_.least_remaining)).mean();
   means_.Add(&report->generator, total);
   return total;
@@ -198,7 +191,8 @@ FlowBatch FlowTrainer::NextBatch(base::Random* random, std::vector<FlowExample>*
 void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
   const bool is_energy = ScoresAnswers(epoch());
   report->whole_answers = is_energy;
-  generator_->set_dropout(is_energy ? flow_.energy.dropout : flow_.dropout);
+  // Answers in use have none of the spread that dropout adds in training.
+  generator_->set_dropout(is_energy ? 0 : flow_.dropout);
   base::Random random(options_.seed, epoch() + options_.epochs);  // not that of the epoch's clips
   int64_t step = first_step;
   for (std::vector<FlowExample>& examples : TakeEpoch()) {
@@ -223,16 +217,6 @@ double FlowTrainer::ValidationError(const Example& example) {
   const torch::Tensor answer = network::AnswerWindows(generator_, manifest_, {&captured.input, 1});
   const torch::Tensor follower = network::PadPoses({&captured.target}, answer.size(1));
   return network::NormLoss(answer, follower, torch::tensor({answer.size(1)})).item<double>();
-}
-
-std::vector<double> FlowTrainer::TakeErrors(absl::Span<const dataset::Sequence> takes) {
-  const absl::StatusOr<std::vector<double>> errors =
-      ErrorByPosition(manifest_, takes, [this](const auto inputs) { return AnswerNow(inputs); });
-  // An answer that is not finite has no error; the loss of such a run is not finite either.
-  if (errors.ok()) return *errors;
-  return std::vector<double>(
-      static_cast<size_t>(PositionCount(takes, manifest_.model.frame_rate_hz)),
-      std::numeric_limits<double>::quiet_NaN());
 }
 
 std::vector<checkpoint::Tensor> FlowTrainer::BestTensors() {

@@ -1,6 +1,9 @@
 #ifndef DUET_MODEL_TRAINING_FLOW_TRAINER_H_
 #define DUET_MODEL_TRAINING_FLOW_TRAINER_H_
 
+#include <torch/torch.h>
+
+#include <cstdint>
 #include <future>
 #include <optional>
 #include <string>
@@ -11,10 +14,28 @@
 #include "model/network/flow_generator.h"
 #include "model/training/epoch_trainer.h"
 #include "model/training/flow_batches.h"
-#include "model/training/loss_means.h"
 #include "model/training/optimiser.h"
 
 namespace duet::training {
+
+// Adds up losses for the report of an epoch. Values are read only at the end, because reading one
+// from an accelerator waits for it.
+class LossMeans {
+ public:
+  // The losses added for one `mean` in one step count as its value in that step.
+  void Add(double* mean, const torch::Tensor& loss) { losses_.emplace_back(mean, loss.detach()); }
+
+  // Adds the losses divided by `steps` to their means.
+  void Write(int64_t steps) {
+    for (const auto& [mean, loss] : losses_) {
+      *mean += loss.item<double>() / static_cast<double>(steps);
+    }
+    losses_.clear();
+  }
+
+ private:
+  std::vector<std::pair<double*, torch::Tensor>> losses_;
+};
 
 // Trains the sampling generator, first by conditional flow matching: from (1 - t) noise + t motion
 // for a random t, it learns to predict the motion. Then by the energy score of whole answers, after
@@ -41,7 +62,6 @@ class FlowTrainer : public EpochTrainer {
   absl::Status LoadWeights(const checkpoint::Checkpoint& checkpoint) override;
   // The error of the typical answer: variety 0.
   double ValidationError(const Example& example) override;
-  std::vector<double> TakeErrors(absl::Span<const dataset::Sequence> takes) override;
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
   // The clips of the current epoch. Those of the next one are drawn meanwhile, on another thread.
   FlowEpoch TakeEpoch();
@@ -52,7 +72,7 @@ class FlowTrainer : public EpochTrainer {
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor DrawSource(const FlowBatch& batch) const;
-  // The scores of limb lengths, feet and hands; see FlowTraining::Energy.
+  // The scores of feet and hands; see FlowTraining::Energy.
   template <typename Add>
   void AddBodyScores(const FlowBatch& batch, const torch::Tensor& answers, const Add& add,
                      EpochReport* report);

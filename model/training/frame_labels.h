@@ -5,7 +5,7 @@
 
 #include "model/base/random.h"
 #include "model/dataset/dataset.h"
-#include "model/training/flow_training.h"
+#include "model/training/options.h"
 
 namespace duet::training {
 

@@ -1,9 +1,8 @@
-#include "model/training/graded_labels.h"
-
 #include <algorithm>
 
 #include "model/engine/window_standardisation.h"
 #include "model/motion/resample.h"
+#include "model/training/sampler.h"
 
 namespace duet::training {
 namespace {

@@ -1,10 +1,13 @@
 #ifndef DUET_MODEL_TRAINING_LONE_LEADER_H_
 #define DUET_MODEL_TRAINING_LONE_LEADER_H_
 
+#include <vector>
+
 #include "absl/status/status.h"
 #include "model/base/random.h"
 #include "model/dataset/dataset.h"
 #include "model/engine/model_description.h"
+#include "model/motion/poses.h"
 #include "model/training/options.h"
 
 namespace duet::training {
@@ -18,7 +21,7 @@ absl::Status CheckLoneLeaders(const TrainingOptions& options, const dataset::Dat
 // follower moves as captured, but its place and direction are those that it had relative to its
 // own leader. If the new leader turns, the follower walks around it, at most as fast as people do,
 // so that it is sometimes beside or behind a leader who turns quickly. Beside one who rests, it
-// goes back to its first pose (reaction_pace.h). Then it passes the stages of a server, so that
+// goes back to its first pose. Then it passes the stages of a server, so that
 // feet step where the follower is carried along and bodies keep apart. A leader without a follower
 // thus has the distribution of captured followers of the class as its target.
 //
@@ -29,6 +32,19 @@ absl::Status CheckLoneLeaders(const TrainingOptions& options, const dataset::Dat
 void ReplaceLeader(const engine::ModelDescription& model, const dataset::Dataset& dataset,
                    const TrainingOptions::Augmentation& options, base::Random* random,
                    dataset::Sequence* sequence);
+
+// How much a leader acts in every frame, by the speed of its joints: from 0, it rests, to 1.
+std::vector<double> ActingShares(const motion::Poses& leader, double frame_rate_hz);
+
+// The frames of a captured reaction that a follower goes through beside another leader, in frames
+// of the reaction, for `frames` frames of that leader from `first` on.
+//
+// While the leader acts, the reaction advances at its own pace, and goes back after its end. While
+// the leader rests, the follower goes back to its first pose, and sways there. Captures end with
+// the reaction; without the way back, each window of a long clip would begin where the last
+// reaction ended, and turn further away. Half of the followers begin in the midst of the reaction.
+std::vector<double> ReactionFrames(const std::vector<double>& acting_shares, int first, int frames,
+                                   double frame_rate_hz, base::Random* random);
 
 }  // namespace duet::training
 

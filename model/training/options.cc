@@ -1,21 +1,242 @@
 #include "model/training/options.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/checkpoint/architecture_json.h"
 #include "model/checkpoint/names.h"
 #include "model/retargeting/anatomy.h"
-#include "model/training/setting_fields.h"
 
 namespace duet::training {
 namespace {
 
 using nlohmann::json;
+
+constexpr std::size_t kMaxWords = 256, kMaxWordBytes = 64;
+constexpr int64_t kMaxUnits = 4096;
+constexpr int64_t kMaxEpochs = 1000000;
+constexpr double kMaxWeight = 1e6;
+
+// Settings by dotted path, with their values as text.
+using Description = std::map<std::string, std::string>;
+
+// The fields of a training configuration. Settings declare themselves once, for reading a
+// configuration and for describing it:
+//
+//   fields->Section("drift", [&] {
+//     fields->Share("share", &drift->share);
+//     fields->Number("tilt", 0, 4, &drift->tilt);
+//   });
+class SettingFields {
+ public:
+  // Reads the values from a JSON object. Errors are recorded in `reader`.
+  explicit SettingFields(base::ObjectReader* reader) : reader_(reader) {}
+  // Adds the values to `description`, as the shortest texts that read back as the same values.
+  explicit SettingFields(Description* description) : description_(description) {}
+
+  // Whether there is a field of this name. Fields that configurations of earlier versions lack are
+  // declared only if there is one.
+  bool Has(const std::string& name) const { return reader_ == nullptr || reader_->Has(name); }
+  void Number(const std::string& name, double min, double max, double* value);
+  // A probability, or a part of a whole.
+  void Share(const std::string& name, double* value) { Number(name, 0, 1, value); }
+  void Int(const std::string& name, int64_t min, int64_t max, int64_t* value);
+  void Bool(const std::string& name, bool* value);
+  // One of several words.
+  void Word(const std::string& name, const std::vector<std::string>& choices, std::string* value);
+  void Words(const std::string& name, std::vector<std::string>* values);
+
+  // Declares the fields of the object `name` with `declare()`.
+  template <typename Declare>
+  void Section(const std::string& name, Declare declare) {
+    const std::string outer = path_;
+    path_ += name + ".";
+    if (reader_ == nullptr) {
+      declare();
+    } else if (const nlohmann::json& object = reader_->Object(name); reader_->ok()) {
+      base::ObjectReader section(object, reader_->PathOf(name));
+      base::ObjectReader* const reader = std::exchange(reader_, &section);
+      declare();
+      reader_ = reader;
+      reader_->Update(section.Finish());
+    }
+    path_ = outer;
+  }
+
+ private:
+  base::ObjectReader* reader_ = nullptr;  // of the current section
+  Description* description_ = nullptr;
+  std::string path_;  // of the current section, with a dot at its end
+};
+
+void SettingFields::Number(const std::string& name, double min, double max, double* value) {
+  if (reader_ != nullptr) {
+    *value = reader_->Number(name, min, max);
+  } else {
+    const std::string text = nlohmann::json(*value).dump();
+    (*description_)[path_ + name] = std::string(absl::StripSuffix(text, ".0"));
+  }
+}
+
+void SettingFields::Int(const std::string& name, int64_t min, int64_t max, int64_t* value) {
+  if (reader_ != nullptr) {
+    *value = reader_->Int(name, min, max);
+  } else {
+    (*description_)[path_ + name] = absl::StrCat(*value);
+  }
+}
+
+void SettingFields::Bool(const std::string& name, bool* value) {
+  if (reader_ != nullptr) {
+    *value = reader_->Bool(name);
+  } else {
+    (*description_)[path_ + name] = *value ? "true" : "false";
+  }
+}
+
+void SettingFields::Word(const std::string& name, const std::vector<std::string>& choices,
+                         std::string* value) {
+  if (reader_ == nullptr) {
+    (*description_)[path_ + name] = *value;
+    return;
+  }
+  *value = reader_->String(name, kMaxWordBytes);
+  if (reader_->ok() && std::find(choices.begin(), choices.end(), *value) == choices.end()) {
+    reader_->Fail(name, absl::StrCat("expected one of ", absl::StrJoin(choices, ", "), ", got ",
+                                     base::Quoted(*value)));
+  }
+}
+
+void SettingFields::Words(const std::string& name, std::vector<std::string>* values) {
+  if (reader_ != nullptr) {
+    *values = reader_->Strings(name, kMaxWords);
+  } else {
+    (*description_)[path_ + name] = absl::StrJoin(*values, " ");
+  }
+}
+
+constexpr int64_t kMostSteps = 100000000;
+
+void DeclareFlow(SettingFields* fields, FlowTraining* flow) {
+  fields->Number("dropout", 0, 0.95, &flow->dropout);
+  fields->Int("passes", 1, kMaxEpochs, &flow->passes);
+  fields->Int("least_steps", 0, kMostSteps, &flow->least_steps);
+  fields->Number("window_seconds", 0, 60, &flow->window_seconds);
+  fields->Number("stride_seconds", 0.01, 60, &flow->stride_seconds);
+  fields->Number("lookahead_seconds", 0, 60, &flow->lookahead_seconds);
+  fields->Number("target_smoothing", 0, 100, &flow->target_smoothing);
+  fields->Number("pair_scale", 0, 0.9, &flow->pair_scale);
+  fields->Share("unlabelled", &flow->unlabelled);
+  fields->Share("several_known", &flow->several_known);
+  fields->Number("known_noise", 0, 10, &flow->known_noise);
+  fields->Number("difference_weight", 0, kMaxWeight, &flow->difference_weight);
+  fields->Number("bone_weight", 0, kMaxWeight, &flow->bone_weight);
+  fields->Number("slide_speed", 0, 100, &flow->slide_speed);
+  fields->Number("least_remaining", 1e-6, 1, &flow->least_remaining);
+  fields->Number("noise_share", 0, 2, &flow->noise_share);
+  if (fields->Has("kept_share")) fields->Share("kept_share", &flow->kept_share);
+}
+
+void DeclareDrift(SettingFields* fields, FlowTraining::Drift* drift) {
+  fields->Share("share", &drift->share);
+  fields->Number("tilt", 0, 4, &drift->tilt);
+  fields->Number("bend", 0, 4, &drift->bend);
+  fields->Number("turn", 0, 4, &drift->turn);
+  if (fields->Has("twist")) fields->Number("twist", 0, 4, &drift->twist);
+  fields->Number("root", 0, 10, &drift->root);
+  fields->Number("height", 0, 10, &drift->height);
+  fields->Number("joints", 0, 10, &drift->joints);
+  fields->Int("frames", 1, 1000, &drift->frames);
+}
+
+void DeclareLive(SettingFields* fields, FlowTraining::Live* live) {
+  fields->Share("share", &live->share);
+  fields->Share("several_known", &live->several_known);
+  fields->Number("remade_seconds", 0, 60, &live->remade_seconds);
+  fields->Number("delay_seconds", 0, 60, &live->delay_seconds);
+  fields->Number("future_seconds", 0.1, 60, &live->future_seconds);
+}
+
+void DeclareEnergy(SettingFields* fields, FlowTraining::Energy* energy) {
+  fields->Share("from", &energy->from);
+  fields->Int("answers", 2, 64, &energy->answers);
+  fields->Number("velocity_weight", 0, kMaxWeight, &energy->velocity_weight);
+  fields->Number("block_weight", 0, kMaxWeight, &energy->block_weight);
+  fields->Int("block_frames", 2, 1000, &energy->block_frames);
+  fields->Number("feet_weight", 0, kMaxWeight, &energy->feet_weight);
+  fields->Number("hands_weight", 0, kMaxWeight, &energy->hands_weight);
+  fields->Number("near_hands", 1e-3, 10, &energy->near_hands);
+}
+
+void DeclareStillness(SettingFields* fields, FlowTraining::Stillness* stillness) {
+  fields->Share("pauses", &stillness->pauses);
+  fields->Share("ends", &stillness->ends);
+  fields->Share("motionless", &stillness->motionless);
+  fields->Share("unlabelled", &stillness->unlabelled);
+  fields->Share("clean", &stillness->clean);
+}
+
+void Declare(SettingFields* fields, FlowTraining* flow) {
+  fields->Section("flow", [&] { DeclareFlow(fields, flow); });
+  fields->Section("frame_labels", [&, &labels = flow->frame_labels] {
+    fields->Number("shift", 0, 1000, &labels.shift);
+    fields->Share("unlabelled", &labels.unlabelled);
+    fields->Share("avoided", &labels.avoided);
+  });
+  fields->Section("drift", [&] { DeclareDrift(fields, &flow->drift); });
+  fields->Section("live", [&] { DeclareLive(fields, &flow->live); });
+  fields->Section("own", [&, &own = flow->own] {
+    fields->Share("share", &own.share);
+    fields->Int("most_frames", 1, 1000, &own.most_frames);
+    fields->Int("return_frames", 1, 1000, &own.return_frames);
+  });
+  fields->Section("energy", [&] { DeclareEnergy(fields, &flow->energy); });
+  if (fields->Has("leaders")) {
+    fields->Section("leaders", [&] { fields->Share("share", &flow->leaders.share); });
+  }
+  if (fields->Has("stillness")) {
+    fields->Section("stillness", [&] { DeclareStillness(fields, &flow->stillness); });
+  }
+  if (fields->Has("critic")) {
+    fields->Section("critic", [&, &critic = flow->critic] {
+      fields->Int("steps", 0, kMaxEpochs, &critic.steps);
+      fields->Int("answers", 1, 64, &critic.answers);
+    });
+  }
+}
+
+void Declare(SettingFields* fields, PaperTraining* paper) {
+  fields->Section("dropout", [&] {
+    fields->Number("slices", 0, 0.95, &paper->dropout.slices);
+    fields->Number("encoded", 0, 0.95, &paper->dropout.encoded);
+  });
+  fields->Section("losses", [&, &l = paper->losses] {
+    fields->Number("bone", 0, kMaxWeight, &l.bone);
+    fields->Number("continuity", 0, kMaxWeight, &l.continuity);
+    fields->Word("continuity_form", {"hinge", "path_length"}, &l.continuity_form);
+    fields->Number("adversarial", 0, kMaxWeight, &l.adversarial);
+  });
+  fields->Section("discriminator", [&, &d = paper->discriminator] {
+    fields->Bool("binary", &d.binary);
+    fields->Int("hidden", 1, kMaxUnits, &d.hidden);
+    fields->Number("learning_rate", 1e-9, 10, &d.learning_rate);
+    fields->Number("dropout", 0, 0.95, &d.dropout);
+    fields->Bool("unit_norm_kernels", &d.unit_norm_kernels);
+  });
+  fields->Share("graded_labels", &paper->graded_labels);
+}
 
 constexpr int kMaxDepth = 4;
 
@@ -35,11 +256,9 @@ void DeclareOptimiser(SettingFields* fields, TrainingOptions::Optimiser* optimis
 
 void DeclareAugmentation(SettingFields* fields, TrainingOptions::Augmentation* augmentation) {
   fields->Share("mirror", &augmentation->mirror);
-  fields->Share("mirror_handed", &augmentation->mirror_handed);
   fields->Share("swap_roles", &augmentation->swap_roles);
   fields->Number("body_scale", 0, 0.9, &augmentation->body_scale);
   fields->Number("time_warp", 0, 2, &augmentation->time_warp);
-  fields->Number("root_distance", 0, 10, &augmentation->root_distance);
   fields->Number("yaw", 0, 4, &augmentation->yaw);
   fields->Number("leader_yaw", 0, 4, &augmentation->leader_yaw);
   fields->Number("noise", 0, 10, &augmentation->noise);
@@ -63,7 +282,6 @@ void Declare(SettingFields* fields, TrainingOptions* options) {
   fields->Section("validation", [&, &validation = options->validation] {
     fields->Words("subjects", &validation.subjects);
     fields->Number("fraction", 0, 0.9, &validation.fraction);
-    fields->Int("patience", 0, kMaxEpochs, &validation.patience);
   });
 }
 
@@ -164,7 +382,7 @@ namespace {
 // A mirror image is wrong if left and right joints are not exchanged.
 absl::Status CheckMirror(const TrainingOptions::Augmentation& augmentation,
                          const motion::Skeleton& skeleton) {
-  if (augmentation.mirror == 0 && augmentation.mirror_handed == 0) return absl::OkStatus();
+  if (augmentation.mirror == 0) return absl::OkStatus();
   const std::vector<int> counterparts = retargeting::CounterpartJoints(skeleton.joint_names);
   for (size_t joint = 0; joint < counterparts.size(); ++joint) {
     if (counterparts[joint] != static_cast<int>(joint)) return absl::OkStatus();

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "model/network/losses.h"
 #include "model/network/parameters.h"
 
@@ -21,18 +22,9 @@ network::Generator MakeGenerator(const TrainingOptions& options,
   return generator;
 }
 
-torch::Tensor Reconstruction(const std::string& form, const torch::Tensor& predicted,
-                             const TrainingBatch& batch) {
-  const torch::Tensor& lengths = batch.input.lengths;
-  if (form == "l2") return network::L2Loss(predicted, batch.target, lengths);
-  if (form == "norm") return network::NormLoss(predicted, batch.target, lengths);
-  return network::L1Loss(predicted, batch.target, lengths);
-}
-
-network::ContinuityOptions Continuity(const PaperTraining::Losses& losses) {
-  return {losses.continuity_form == "hinge" ? network::ContinuityForm::kHinge
-                                            : network::ContinuityForm::kPathLength,
-          losses.continuity_gap, losses.continuity_margin};
+network::ContinuityForm Continuity(const PaperTraining::Losses& losses) {
+  return losses.continuity_form == "hinge" ? network::ContinuityForm::kHinge
+                                           : network::ContinuityForm::kPathLength;
 }
 
 }  // namespace
@@ -63,8 +55,7 @@ torch::Tensor PaperTrainer::GeneratorLoss(const TrainingBatch& batch, EpochRepor
     total = total + weight * loss;
     *mean += loss.item<double>() / static_cast<double>(steps_per_epoch_);
   };
-  add(losses_.reconstruction_weight, Reconstruction(losses_.reconstruction, predicted, batch),
-      &report->reconstruction);
+  add(1, network::L1Loss(predicted, batch.target, lengths), &report->reconstruction);
   if (losses_.bone > 0) {
     add(losses_.bone,
         network::BoneLoss(predicted, batch.follower, lengths, manifest_.model.skeleton.bones),
@@ -131,6 +122,104 @@ std::vector<std::pair<std::string, torch::optim::Optimizer*>> PaperTrainer::Stat
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimisers;
   if (adversary_ != nullptr) optimisers = adversary_->Optimisers();
   optimisers.emplace_back("generator_optimiser", &generator_optimiser_.state());
+  return optimisers;
+}
+
+namespace {
+
+TrainingOptions::Optimiser OptimiserOptions(const TrainingOptions& options) {
+  TrainingOptions::Optimiser optimiser = options.optimiser;
+  optimiser.learning_rate = std::get<PaperTraining>(options.method).discriminator.learning_rate;
+  return optimiser;
+}
+
+// Disables the gradients of a module's parameters during its lifetime.
+class Frozen {
+ public:
+  explicit Frozen(torch::nn::Module& module) : module_(module) { Set(false); }
+  ~Frozen() { Set(true); }
+  Frozen(const Frozen&) = delete;
+  Frozen& operator=(const Frozen&) = delete;
+
+ private:
+  void Set(bool on) {
+    for (torch::Tensor& parameter : module_.parameters()) parameter.set_requires_grad(on);
+  }
+  torch::nn::Module& module_;
+};
+
+}  // namespace
+
+Adversary::Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest,
+                     int64_t steps)
+    : options_(options), settings_(std::get<PaperTraining>(options.method).discriminator) {
+  Add("discriminator", true, manifest, steps);
+  if (settings_.binary) Add("binary_discriminator", false, manifest, steps);
+}
+
+void Adversary::Add(const std::string& name, bool class_aware, const checkpoint::Manifest& manifest,
+                    int64_t steps) {
+  network::DiscriminatorOptions sizes;
+  sizes.input = 3 * manifest.model.skeleton.joint_count();
+  sizes.window_frames = manifest.model.window_frames;
+  sizes.hidden = settings_.hidden;
+  sizes.outputs = class_aware ? manifest.model.class_count() + 1 : 2;
+  network::Discriminator network(sizes);
+  network->set_dropout(settings_.dropout);
+  auto optimiser =
+      std::make_unique<Optimiser>(OptimiserOptions(options_), network->parameters(), steps);
+  critics_.push_back({name, class_aware, network, std::move(optimiser)});
+}
+
+double Adversary::Train(const TrainingBatch& batch, const torch::Tensor& synthesised,
+                        int64_t step) {
+  double sum = 0;
+  const torch::Tensor& lengths = batch.input.lengths;
+  for (Critic& critic : critics_) {
+    const torch::Tensor classes =
+        critic.class_aware ? batch.classes : torch::zeros_like(batch.classes);
+    const torch::Tensor loss =
+        network::DiscriminatorLoss(critic.network->forward(batch.follower, lengths),
+                                   critic.network->forward(synthesised, lengths), classes);
+    loss.backward();
+    critic.optimiser->Step(step);
+    if (settings_.unit_norm_kernels) critic.network->NormaliseKernels();
+    sum += loss.item<double>();
+  }
+  return sum;
+}
+
+torch::Tensor Adversary::GeneratorLoss(const TrainingBatch& batch,
+                                       const torch::Tensor& synthesised) {
+  torch::Tensor sum = torch::zeros({});
+  if (batch.single_rows.numel() == 0) return sum;
+  const torch::Tensor motion = synthesised.index_select(0, batch.single_rows);
+  const torch::Tensor lengths = batch.input.lengths.index_select(0, batch.single_rows);
+  const torch::Tensor classes = batch.classes.index_select(0, batch.single_rows);
+  for (Critic& critic : critics_) {
+    const Frozen frozen(*critic.network);
+    sum = sum + network::AdversarialLoss(critic.network->forward(motion, lengths),
+                                         critic.class_aware ? classes : torch::zeros_like(classes));
+  }
+  return sum;
+}
+
+std::vector<std::pair<std::string, torch::Tensor>> Adversary::Tensors() {
+  std::vector<std::pair<std::string, torch::Tensor>> tensors;
+  for (Critic& critic : critics_) {
+    int64_t i = 0;
+    for (const torch::Tensor& tensor : critic.network->parameters()) {
+      tensors.emplace_back(absl::StrCat(critic.name, i++), tensor.detach());
+    }
+  }
+  return tensors;
+}
+
+std::vector<std::pair<std::string, torch::optim::Optimizer*>> Adversary::Optimisers() {
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimisers;
+  for (Critic& critic : critics_) {
+    optimisers.emplace_back(critic.name + "_optimiser", &critic.optimiser->state());
+  }
   return optimisers;
 }
 

@@ -9,15 +9,56 @@
 #include <vector>
 
 #include "model/checkpoint/checkpoint.h"
+#include "model/checkpoint/manifest.h"
 #include "model/dataset/dataset.h"
+#include "model/network/discriminator.h"
 #include "model/network/generator.h"
-#include "model/training/adversary.h"
 #include "model/training/epoch_trainer.h"
 #include "model/training/optimiser.h"
 #include "model/training/options.h"
 #include "model/training/sampler.h"
 
 namespace duet::training {
+
+// The discriminators that the paper's generator is trained against: the class-aware one and, if the
+// options ask for it, a binary one that only separates real from synthesised motion (MSHL22).
+//
+// Source:  paper section 3.3 and Eq. 4; MSHL22.
+// Threads: not safe to call concurrently.
+class Adversary {
+ public:
+  // Requires a PaperTraining with losses.adversarial above 0. `steps` is the number of steps of the
+  // whole run, for the schedule.
+  Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest, int64_t steps);
+
+  // One step of every discriminator on captured and synthesised followers [N, T, 3 J]. Returns the
+  // sum of their losses.
+  double Train(const TrainingBatch& batch, const torch::Tensor& synthesised, int64_t step);
+
+  // The generator's loss, a scalar: the sum over the discriminators, which get no gradient. Only
+  // clips with a single class count, because a mixed answer has no one target class; 0 without such
+  // clips.
+  torch::Tensor GeneratorLoss(const TrainingBatch& batch, const torch::Tensor& synthesised);
+
+  // The state that a resumed run restores: parameters by name, and the optimisers.
+  std::vector<std::pair<std::string, torch::Tensor>> Tensors();
+  std::vector<std::pair<std::string, torch::optim::Optimizer*>> Optimisers();
+
+ private:
+  struct Critic {
+    std::string name;
+    bool class_aware;
+    network::Discriminator network;
+    std::unique_ptr<Optimiser> optimiser;
+  };
+
+  void Add(const std::string& name, bool class_aware, const checkpoint::Manifest& manifest,
+           int64_t steps);
+
+  const TrainingOptions& options_;
+  const PaperTraining::DiscriminatorSettings& settings_;
+  std::vector<Critic> critics_;
+};
 
 // Trains the paper's generator, with an adversarial loss against its discriminator if the options
 // ask for one.

@@ -6,31 +6,30 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "model/base/status_macros.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/dataset/time_line.h"
 #include "model/engine/body_fit.h"
+#include "model/engine/facing_fit.h"
+#include "model/engine/hand_contact_fit.h"
 #include "model/engine/leader_statistics.h"
-#include "model/network/threads.h"
-#include "model/training/class_fits.h"
-#include "model/training/critic_trainer.h"
-#include "model/training/default_seeds.h"
+#include "model/network/exceptions.h"
 #include "model/training/direction_fit.h"
+#include "model/training/finishing.h"
 #include "model/training/flow_trainer.h"
 #include "model/training/lone_leader.h"
 #include "model/training/paper_trainer.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
 #include "model/training/stillness.h"
-#include "model/training/take_errors.h"
-#include "model/training/trained_synthesizer.h"
 
 namespace duet::training {
 namespace {
@@ -39,31 +38,18 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostPeopleBytes = 4096;  // of a manifest's text
 
-// The trainer of each method: its registration. Without a line here, a method does not compile.
-template <typename Method>
-struct TrainerOf;
-template <>
-struct TrainerOf<PaperTraining> {
-  using Type = PaperTrainer;
-};
-template <>
-struct TrainerOf<FlowTraining> {
-  using Type = FlowTrainer;
-};
-
 // Requires a manifest of the same architecture. `validation` may be empty. Options, manifest and
 // data set must outlive the trainer.
 std::unique_ptr<EpochTrainer> MakeTrainer(const TrainingOptions& options,
                                           const checkpoint::Manifest& manifest,
                                           const dataset::Dataset& dataset, std::vector<int> train,
                                           std::vector<int> validation) {
-  return std::visit(
-      [&](const auto& method) -> std::unique_ptr<EpochTrainer> {
-        using Trainer = typename TrainerOf<std::decay_t<decltype(method)>>::Type;
-        return std::make_unique<Trainer>(options, manifest, dataset, std::move(train),
-                                         std::move(validation));
-      },
-      options.method);
+  if (std::holds_alternative<PaperTraining>(options.method)) {
+    return std::make_unique<PaperTrainer>(options, manifest, dataset, std::move(train),
+                                          std::move(validation));
+  }
+  return std::make_unique<FlowTrainer>(options, manifest, dataset, std::move(train),
+                                       std::move(validation));
 }
 
 // Records properties of the training sequences for the model card.
@@ -105,23 +91,66 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   return manifest;
 }
 
-void MeasureBodies(const dataset::Dataset& dataset, const std::vector<int>& sequences,
-                   engine::ModelDescription* model) {
-  engine::BodyFit fit(dataset.skeleton);
+// Adds every stretch of a class to a fit (HandContactFit, FacingFit).
+template <typename Fit>
+void AddStretches(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                  int interaction_class, Fit* fit) {
   for (const int index : sequences) {
-    const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(index)].pair;
-    fit.Add(pair.leader.poses, pair.follower.poses);
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    const motion::ClipPair& pair = sequence.pair;
+    const auto add = [&](const dataset::LabelSpan& span) {
+      if (span.interaction_class != interaction_class) return;
+      fit->Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
+    };
+    std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
+    if (sequence.labels.empty()) add({sequence.interaction_class, 0, pair.leader.frame_count()});
   }
-  model->bone_ratios = fit.BoneRatios();
 }
 
-engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,
-                                        const std::vector<int>& sequences) {
+void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                  engine::ModelDescription* model) {
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    const std::string& name = dataset.classes[static_cast<size_t>(c)];
+    engine::HandContactFit hands(dataset.skeleton);
+    AddStretches(dataset, sequences, c, &hands);
+    if (const std::optional<double> metres = hands.Metres(dataset.frame_rate_hz)) {
+      model->hand_contacts.push_back({name, *metres});
+    }
+  }
+}
+
+std::vector<engine::FacingClass> FindFacingClasses(const dataset::Dataset& dataset,
+                                                   const std::vector<int>& sequences) {
+  std::vector<engine::FacingClass> classes;
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    engine::FacingFit fit(dataset.skeleton, dataset.frame_rate_hz);
+    AddStretches(dataset, sequences, c, &fit);
+    const std::optional<double> degrees = fit.Degrees();
+    if (degrees) classes.push_back({dataset.classes[static_cast<size_t>(c)], std::round(*degrees)});
+  }
+  return classes;
+}
+
+// What the description of a model says of its training data: `takes` of the whole data set, and the
+// windows `train` that they are cut into.
+void Measure(const dataset::Dataset& whole, const std::vector<int>& takes,
+             const dataset::Dataset& dataset, const std::vector<int>& train,
+             const TrainingOptions& options, engine::ModelDescription* model) {
   std::vector<const motion::Poses*> leaders;
-  for (const int index : sequences) {
+  for (const int index : train) {
     leaders.push_back(&dataset.sequences[static_cast<size_t>(index)].pair.leader.poses);
   }
-  return engine::FitLeaderStatistics(dataset.skeleton, leaders, dataset.frame_rate_hz);
+  model->leader_statistics =
+      engine::FitLeaderStatistics(dataset.skeleton, leaders, dataset.frame_rate_hz);
+  FindContacts(dataset, train, model);
+  model->facing_classes = FindFacingClasses(whole, takes);
+  engine::BodyFit body(whole.skeleton);
+  for (const int index : takes) {
+    const motion::ClipPair& pair = whole.sequences[static_cast<size_t>(index)].pair;
+    body.Add(pair.leader.poses, pair.follower.poses);
+  }
+  model->bone_ratios = body.BoneRatios();
+  if (FlowIn(options) != nullptr) model->partner_direction = FitPartnerDirection(dataset, train);
 }
 
 // Moves the validation sequences from `train` to the result.
@@ -160,17 +189,11 @@ void CutAll(const dataset::Dataset& whole, int frames, int stride, std::vector<i
   *indices = std::move(windows);
 }
 
-int LookaheadFrames(const TrainingOptions& options, double frame_rate_hz) {
-  const auto* flow = std::get_if<FlowTraining>(&options.method);
-  return flow == nullptr ? 0
-                         : static_cast<int>(std::lround(flow->lookahead_seconds * frame_rate_hz));
-}
-
 // The data set as the method trains on it. The sequences are held back before they are cut, so that
 // no window of a sequence for validation is trained on.
 dataset::Dataset CutIfAsked(const TrainingOptions& options, const dataset::Dataset& whole,
                             std::vector<int>* train, std::vector<int>* validation) {
-  const auto* flow = std::get_if<FlowTraining>(&options.method);
+  const FlowTraining* flow = FlowIn(options);
   if (flow == nullptr || flow->window_seconds == 0) return whole;
   const auto frames = [&](double seconds) {
     return std::max(2, static_cast<int>(std::lround(seconds * whole.frame_rate_hz)));
@@ -183,26 +206,12 @@ dataset::Dataset CutIfAsked(const TrainingOptions& options, const dataset::Datas
   return cut;
 }
 
-// The sequences `indices` that are cut into windows, whole.
-std::vector<dataset::Sequence> WholeTakes(const TrainingOptions& options,
-                                          const dataset::Dataset& whole,
-                                          const std::vector<int>& indices) {
-  std::vector<dataset::Sequence> takes;
-  const auto* flow = std::get_if<FlowTraining>(&options.method);
-  if (flow == nullptr || flow->window_seconds == 0) return takes;
-  for (const int index : indices) {
-    takes.push_back(whole.sequences[static_cast<size_t>(index)]);
-  }
-  return takes;
-}
-
 // The checkpoint that the run begins with, noted in the manifest; an empty one if there is none.
 absl::StatusOr<checkpoint::Checkpoint> ReadFrom(const RunPlan& plan,
                                                 checkpoint::Manifest* manifest) {
   if (plan.from.empty()) return checkpoint::Checkpoint();
-  absl::StatusOr<checkpoint::Checkpoint> from = checkpoint::ReadCheckpoint(plan.from);
-  if (!from.ok()) return from;
-  const engine::ModelDescription& model = from->manifest.model;
+  DUET_TRY(checkpoint::Checkpoint from, checkpoint::ReadCheckpoint(plan.from));
+  const engine::ModelDescription& model = from.manifest.model;
   if (model.skeleton.joint_names != manifest->model.skeleton.joint_names ||
       model.classes != manifest->model.classes) {
     return absl::InvalidArgumentError(absl::StrCat(
@@ -212,12 +221,12 @@ absl::StatusOr<checkpoint::Checkpoint> ReadFrom(const RunPlan& plan,
         absl::StrJoin(model.skeleton.joint_names, " "), "; ", absl::StrJoin(model.classes, " ")));
   }
   manifest->training["from"] =
-      absl::StrCat(model.name, "@", model.version, " ", from->manifest.weights.sha256);
+      absl::StrCat(model.name, "@", model.version, " ", from.manifest.weights.sha256);
   return from;
 }
 
 absl::Status CheckKeptShare(const RunPlan& plan) {
-  const auto* flow = std::get_if<FlowTraining>(&plan.options.method);
+  const FlowTraining* flow = FlowIn(plan.options);
   if (flow == nullptr || flow->kept_share == 0 || !plan.from.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat("flow.kept_share: expected 0 without --from, got ", flow->kept_share));
@@ -238,22 +247,18 @@ absl::Status StartFrom(const RunPlan& plan, const checkpoint::Checkpoint& from,
 absl::Status AddCritic(const RunPlan& plan, const dataset::Dataset& dataset,
                        const std::vector<int>& train, std::ostream* progress,
                        checkpoint::Checkpoint* checkpoint) {
-  const auto* flow = std::get_if<FlowTraining>(&plan.options.method);
+  const FlowTraining* flow = FlowIn(plan.options);
   if (flow == nullptr || flow->critic.steps == 0) return absl::OkStatus();
-  absl::StatusOr<TrainedCritic> critic =
-      TrainCritic(*flow, plan.options.seed, *checkpoint, dataset, train);
-  if (!critic.ok()) return critic.status();
-  const absl::StatusOr<std::unique_ptr<engine::Synthesizer>> synthesizer =
-      SynthesizerOf(*checkpoint);
-  if (!synthesizer.ok()) return synthesizer.status();
-  absl::StatusOr<std::vector<uint64_t>> seeds = ChooseDefaultSeeds(**synthesizer, dataset, train);
-  if (!seeds.ok()) return seeds.status();
-  checkpoint->manifest.model.default_seeds = *std::move(seeds);
-  checkpoint->critic = std::move(critic->tensors);
-  checkpoint->manifest.metrics["training.critic"] = critic->loss;
+  DUET_TRY(TrainedCritic critic,
+           TrainCritic(*flow, plan.options.seed, *checkpoint, dataset, train));
+  DUET_TRY(const auto synthesizer, SynthesizerOf(*checkpoint));
+  DUET_TRY(checkpoint->manifest.model.default_seeds,
+           ChooseDefaultSeeds(*synthesizer, dataset, train));
+  checkpoint->critic = std::move(critic.tensors);
+  checkpoint->manifest.metrics["training.critic"] = critic.loss;
   *progress << plan.title << ": critic: "
             << absl::StrFormat("loss %.2f (0.69: cannot tell answers from captured followers)\n",
-                               critic->loss);
+                               critic.loss);
   return absl::OkStatus();
 }
 
@@ -267,7 +272,7 @@ absl::Status Write(const RunPlan& plan, checkpoint::Checkpoint checkpoint) {
 absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& dataset,
                              const std::vector<int>& train, checkpoint::Checkpoint from,
                              std::ostream* progress) {
-  const auto* flow = std::get_if<FlowTraining>(&plan.options.method);
+  const FlowTraining* flow = FlowIn(plan.options);
   if (plan.from.empty() || !from.manifest.model.samples || flow == nullptr ||
       flow->critic.steps == 0) {
     return absl::InvalidArgumentError(
@@ -281,16 +286,14 @@ absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& datase
   manifest.model.name = plan.model_name;
   manifest.model.version = plan.model_version;
   if (!plan.description.empty()) manifest.model.description = plan.description;
-  if (absl::Status status = AddCritic(plan, dataset, train, progress, &from); !status.ok()) {
-    return status;
-  }
+  DUET_RETURN_IF_ERROR(AddCritic(plan, dataset, train, progress, &from));
   return Write(plan, std::move(from));
 }
 
 // Moves the trained weights back, a share of the way, to those that the run began with.
 void KeepShare(const TrainingOptions& options, const checkpoint::Checkpoint& from,
                std::vector<checkpoint::Tensor>* tensors) {
-  const auto* flow = std::get_if<FlowTraining>(&options.method);
+  const FlowTraining* flow = FlowIn(options);
   if (flow == nullptr || flow->kept_share == 0) return;
   for (checkpoint::Tensor& tensor : *tensors) {
     if (tensor.name == "base.poses" || tensor.name == "noise.roots") continue;  // measured
@@ -318,32 +321,8 @@ absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
   std::vector<checkpoint::Tensor> tensors = trainer->BestTensors();
   KeepShare(plan.options, from, &tensors);
   checkpoint::Checkpoint checkpoint{std::move(manifest), std::move(tensors), {}};
-  if (absl::Status status = AddCritic(plan, dataset, train, progress, &checkpoint); !status.ok()) {
-    return status;
-  }
+  DUET_RETURN_IF_ERROR(AddCritic(plan, dataset, train, progress, &checkpoint));
   return Write(plan, std::move(checkpoint));
-}
-
-// How long the run will be: settings and data decide it together.
-void ShowLength(const RunPlan& plan, size_t sequences, const EpochTrainer& trainer,
-                std::ostream* progress) {
-  *progress << plan.title << ": " << sequences << " sequences, "
-            << plan.options.epochs * trainer.steps_per_epoch() << " steps\n";
-}
-
-// Explains the jump of the loss where it happens.
-void ShowChangeOfLoss(const RunPlan& plan, const EpochReport& report, bool terminal,
-                      std::ostream* progress) {
-  *progress << (terminal ? "\n" : "") << plan.title << ": from epoch " << report.epoch
-            << " the loss is the score of whole answers (energy.from), on another scale than "
-               "before\n";
-}
-
-void ShowBest(const RunPlan& plan, const EpochTrainer& trainer, std::ostream* progress) {
-  if (!std::isfinite(trainer.best_afd())) return;
-  *progress << plan.title << ": epoch " << trainer.best_epoch() << " of " << trainer.epoch()
-            << " is kept: least error on what was held back, "
-            << absl::StrFormat("%.4f m", trainer.best_afd()) << "\n";
 }
 
 void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
@@ -367,10 +346,9 @@ fs::path CheckpointFolder(const RunPlan& plan) {
 
 absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, bool terminal,
                          std::ostream* progress) {
-  absl::Status status = CheckAgainst(plan.options, whole);
-  if (status.ok()) status = CheckStillness(plan.options, whole);
-  if (status.ok()) status = CheckKeptShare(plan);
-  if (!status.ok()) return status;
+  DUET_RETURN_IF_ERROR(CheckAgainst(plan.options, whole));
+  DUET_RETURN_IF_ERROR(CheckStillness(plan.options, whole));
+  DUET_RETURN_IF_ERROR(CheckKeptShare(plan));
   if (fs::exists(CheckpointFolder(plan))) {
     *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
     return absl::OkStatus();
@@ -378,13 +356,15 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   std::vector<int> train = plan.train;
   std::vector<int> validation = HoldBack(plan.options, whole, &train);
   const std::vector<int> takes = train;
-  const std::vector<dataset::Sequence> held_takes = WholeTakes(plan.options, whole, validation);
   const dataset::Dataset dataset = CutIfAsked(plan.options, whole, &train, &validation);
-  if (status = CheckLoneLeaders(plan.options, dataset); !status.ok()) return status;
+  DUET_RETURN_IF_ERROR(CheckLoneLeaders(plan.options, dataset));
   checkpoint::Manifest manifest = MakeManifest(plan, whole);
   manifest.model.window_frames = dataset.LongestFrameCount();
-  manifest.model.lookahead_frames = LookaheadFrames(plan.options, whole.frame_rate_hz);
-  if (status = checkpoint::CheckManifest(manifest); !status.ok()) return status;
+  if (const FlowTraining* flow = FlowIn(plan.options)) {
+    manifest.model.lookahead_frames =
+        static_cast<int>(std::lround(flow->lookahead_seconds * whole.frame_rate_hz));
+  }
+  DUET_RETURN_IF_ERROR(checkpoint::CheckManifest(manifest));
   std::error_code error;
   fs::create_directories(plan.folder, error);
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
@@ -393,29 +373,22 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
         plan.title,
         ": expected sequences to train on, got none: validation holds back every sequence"));
   }
-  manifest.model.leader_statistics = MeasureLeaders(dataset, train);
-  FindContacts(dataset, train, &manifest.model);
-  manifest.model.facing_classes = FindFacingClasses(whole, takes);
-  MeasureBodies(whole, takes, &manifest.model);
-  const bool fits_direction = std::visit(
-      [](const auto& method) { return method.kFitsPartnerDirection; }, plan.options.method);
-  if (fits_direction) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
-  absl::StatusOr<checkpoint::Checkpoint> from = ReadFrom(plan, &manifest);
-  if (!from.ok()) return from.status();
+  Measure(whole, takes, dataset, train, plan.options, &manifest.model);
+  DUET_TRY(checkpoint::Checkpoint from, ReadFrom(plan, &manifest));
   if (plan.critic_only) {
-    return TrainCriticOnly(plan, dataset, train, *std::move(from), progress);
+    return TrainCriticOnly(plan, dataset, train, std::move(from), progress);
   }
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan.options, manifest, dataset, train, validation);
-  if (status = trainer->UseDevice(plan.device); !status.ok()) return status;
+  DUET_RETURN_IF_ERROR(trainer->UseDevice(plan.device));
   const fs::path state = plan.folder / "state";
-  status = trainer->LoadState(state);
-  if (absl::IsNotFound(status)) status = StartFrom(plan, *from, trainer.get());
-  if (!status.ok()) return status;
-  trainer->ValidateTakes(held_takes);
-  RunLog log(plan.folder / "log.csv", PositionCount(held_takes, whole.frame_rate_hz));
-  if (status = log.ResumeAt(trainer->epoch()); !status.ok()) return status;
-  ShowLength(plan, train.size(), *trainer, progress);
+  absl::Status status = trainer->LoadState(state);
+  if (absl::IsNotFound(status)) status = StartFrom(plan, from, trainer.get());
+  DUET_RETURN_IF_ERROR(status);
+  RunLog log(plan.folder / "log.csv");
+  DUET_RETURN_IF_ERROR(log.ResumeAt(trainer->epoch()));
+  *progress << plan.title << ": " << train.size() << " sequences, "
+            << plan.options.epochs * trainer->steps_per_epoch() << " steps\n";
   EpochReport report;
   while (!trainer->Finished()) {
     const bool first = report.epoch == 0, scored = report.whole_answers;
@@ -427,18 +400,21 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
     }
     // The log before the state: resuming drops a row without its state, but cannot restore a lost
     // row.
-    if (status = log.Append(report); !status.ok()) return status;
-    if (status = trainer->SaveState(state); !status.ok()) return status;
+    DUET_RETURN_IF_ERROR(log.Append(report));
+    DUET_RETURN_IF_ERROR(trainer->SaveState(state));
     if (report.whole_answers && !scored && !first) {
-      ShowChangeOfLoss(plan, report, terminal, progress);
+      *progress << (terminal ? "\n" : "") << plan.title << ": from epoch " << report.epoch
+                << " the loss is the score of whole answers (energy.from), on another scale than "
+                   "before\n";
     }
     Show(plan, report, terminal, progress);
   }
-  ShowBest(plan, *trainer, progress);
-  if (!report.error_by_position.empty()) {
-    *progress << plan.title << ": last epoch: " << PositionsLine(report.error_by_position) << "\n";
+  if (std::isfinite(trainer->best_afd())) {
+    *progress << plan.title << ": epoch " << trainer->best_epoch() << " of " << trainer->epoch()
+              << " is kept: least error on what was held back, "
+              << absl::StrFormat("%.4f m", trainer->best_afd()) << "\n";
   }
-  return Finish(plan, dataset, train, manifest, *from, report, trainer.get(), progress);
+  return Finish(plan, dataset, train, manifest, from, report, trainer.get(), progress);
 }
 
 }  // namespace duet::training

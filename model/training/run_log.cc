@@ -7,7 +7,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "model/training/take_errors.h"
 
 namespace duet::training {
 namespace {
@@ -21,21 +20,11 @@ std::string Optional(double value) {
   return std::isnan(value) ? "" : absl::StrFormat("%.6f", value);
 }
 
-// "error_0s,error_5s": each position by its beginning.
-std::string PositionColumns(int positions) {
-  std::string columns;
-  for (int p = 0; p < positions; ++p)
-    absl::StrAppend(&columns, ",error_", p * kPositionSeconds, "s");
-  return columns;
-}
-
 std::string Row(const EpochReport& r) {
-  std::string row = absl::StrFormat(
-      "%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%s,%.3f,%d", r.epoch, r.generator, r.reconstruction,
-      r.bone, r.continuity, r.adversarial, r.discriminator, Optional(r.validation_afd),
-      Optional(r.validation_afd_pose), r.seconds, r.whole_answers ? 1 : 0);
-  for (const double error : r.error_by_position) absl::StrAppend(&row, ",", Optional(error));
-  return row;
+  return absl::StrFormat("%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%s,%.3f,%d", r.epoch, r.generator,
+                         r.reconstruction, r.bone, r.continuity, r.adversarial, r.discriminator,
+                         Optional(r.validation_afd), Optional(r.validation_afd_pose), r.seconds,
+                         r.whole_answers ? 1 : 0);
 }
 
 absl::Status WriteText(const std::filesystem::path& file, const std::string& text,
@@ -50,7 +39,7 @@ absl::Status WriteText(const std::filesystem::path& file, const std::string& tex
 }  // namespace
 
 absl::Status RunLog::ResumeAt(int64_t epoch) {
-  std::string kept = absl::StrCat(kColumns, PositionColumns(positions_), "\n");
+  std::string kept = absl::StrCat(kColumns, "\n");
   std::ifstream in(file_);
   std::string line;
   std::getline(in, line);  // the column names
@@ -63,14 +52,6 @@ absl::Status RunLog::ResumeAt(int64_t epoch) {
 
 absl::Status RunLog::Append(const EpochReport& report) {
   return WriteText(file_, Row(report) + "\n", std::ios::app);
-}
-
-std::string PositionsLine(const std::vector<double>& error_by_position) {
-  std::string line =
-      absl::StrCat("error by position in whole takes, ", kPositionSeconds, " s each:");
-  for (const double error : error_by_position)
-    absl::StrAppend(&line, absl::StrFormat(" %.3f", error));
-  return line + " m";
 }
 
 std::string ProgressLine(const std::string& title, const EpochReport& report) {

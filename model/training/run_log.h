@@ -16,20 +16,14 @@ namespace duet::training {
 // dropped.
 class RunLog {
  public:
-  // `positions`: number of values of EpochReport::error_by_position.
-  explicit RunLog(std::filesystem::path file, int positions = 0)
-      : file_(std::move(file)), positions_(positions) {}
+  explicit RunLog(std::filesystem::path file) : file_(std::move(file)) {}
 
   absl::Status ResumeAt(int64_t epoch);
   absl::Status Append(const EpochReport& report);
 
  private:
   std::filesystem::path file_;
-  int positions_;
 };
-
-// "error by position in whole takes, 5 s each: 0.131 0.202 m".
-std::string PositionsLine(const std::vector<double>& error_by_position);
 
 // "[#####.....] epoch 12/60  loss 3.214  val 0.61  0:14 left". One line, no line end.
 std::string ProgressLine(const std::string& title, const EpochReport& report);

@@ -5,7 +5,6 @@
 
 #include "model/engine/standard_window.h"
 #include "model/engine/window_standardisation.h"
-#include "model/training/graded_labels.h"
 
 namespace duet::training {
 namespace {

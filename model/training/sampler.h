@@ -6,12 +6,28 @@
 #include <vector>
 
 #include "model/dataset/dataset.h"
+#include "model/motion/poses.h"
 #include "model/network/batch.h"
 #include "model/training/augment.h"
-#include "model/training/example.h"
 #include "model/training/options.h"
 
 namespace duet::training {
+
+// The known part of the follower's first frame.
+enum class StartKnowledge { kNone, kRoot, kPose };
+
+// One training clip: a sequence, the conditions and the target.
+struct Example {
+  dataset::Sequence sequence;
+  StartKnowledge start = StartKnowledge::kNone;
+  std::vector<float> weights;  // [classes], the label vector
+  motion::Poses target;        // [frames, joints], world metres
+  bool single = true;          // the only label is the sequence's class
+};
+
+// A sequence with its own class as label and its captured follower as target.
+Example CapturedExample(const dataset::Dataset& dataset, dataset::Sequence sequence,
+                        StartKnowledge start);
 
 // The clips of one training step of the paper's generator.
 struct TrainingBatch {
@@ -52,6 +68,22 @@ std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
 // The mean pose of each class's followers, [C, 3 J], in the standard coordinates.
 torch::Tensor ClassMeanPoses(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                              const std::vector<int>& train);
+
+// Gives an example a graded, negative or mixed label vector and the matching target. The paper
+// trains on single classes and uses other weights only at inference, where their effect is
+// undefined. Here a weight moves the target along the line from standing still (weight 0) through
+// the captured reaction (1):
+//
+//   30 %  own class at w in [0, 1.5]:            still + w (captured - still)
+//   15 %  own class at -w in [-1, 0]:            still + w (other - still)
+//   10 %  own class at 1, another below 0:       captured
+//   45 %  own class at p, another at q, shares:  (1 - p' - q') still + p' captured + q' other
+//
+// "other" is the follower of a random clip of another class, resampled to this clip's length and
+// moved to its place; with a start pose, it begins there. If `pool` (the epoch's sequences) has no
+// other class, the example does not change.
+void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Sequence>& pool,
+                 base::Random* random, Example* example);
 
 }  // namespace duet::training
 

@@ -251,7 +251,7 @@ Kind DrawKind(const FlowTraining::Stillness& options, base::Random* random) {
 }  // namespace
 
 absl::Status CheckStillness(const TrainingOptions& options, const dataset::Dataset& dataset) {
-  const auto* flow = std::get_if<FlowTraining>(&options.method);
+  const FlowTraining* flow = FlowIn(options);
   if (flow == nullptr || !flow->stillness.used()) return absl::OkStatus();
   const body::Body body = body::FindBody(dataset.skeleton);
   if (flow->architecture.frame_labels) {

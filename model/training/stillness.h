@@ -5,7 +5,6 @@
 #include "model/base/random.h"
 #include "model/dataset/dataset.h"
 #include "model/motion/skeleton.h"
-#include "model/training/flow_training.h"
 #include "model/training/options.h"
 
 namespace duet::training {

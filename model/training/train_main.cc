@@ -14,7 +14,6 @@
 #include "model/base/program_output.h"
 #include "model/checkpoint/manifest.h"
 #include "model/dataset/lone_leaders.h"
-#include "model/network/device.h"
 #include "model/network/exceptions.h"
 #include "model/training/named_configs.h"
 #include "model/training/run.h"
@@ -151,9 +150,6 @@ absl::Status AddLeaders(const Arguments& arguments, duet::dataset::Dataset* data
 
 absl::Status Train(const Arguments& arguments) {
   if (absl::Status status = duet::training::SetTrainingThreads(arguments.threads); !status.ok()) {
-    return status;
-  }
-  if (absl::Status status = duet::network::CheckDevice(arguments.device); !status.ok()) {
     return status;
   }
   absl::StatusOr<duet::training::TrainingOptions> options = ReadOptions(arguments);

@@ -1,6 +1,5 @@
-#include "model/training/default_seeds.h"
-
 #include "gmock/gmock.h"
+#include "model/training/finishing.h"
 #include "tests/support/matchers.h"
 #include "tests/training/made_up_dataset.h"
 

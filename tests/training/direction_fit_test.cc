@@ -121,30 +121,6 @@ TEST(FitPartnerDirection, DirectionOfTheSetupOverridesTheRoots) {
   EXPECT_LT(DegreesOff(*regression, Pair(0, 0).pair.leader, aside), 10);
 }
 
-// In training only right hands reach; mirrored copies add left hands.
-TEST(FitPartnerDirection, AMirroredLeaderHasTheMirroredDirection) {
-  const dataset::Dataset dataset = Reachers();
-  const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
-  ASSERT_TRUE(regression.has_value());
-  dataset::Sequence pair = Pair(35, 0);
-  Mirror(MirroredJoints(dataset.skeleton), &pair);
-  EXPECT_LT(DegreesOff(*regression, pair.pair.leader, {0, 0, -1}), 10);
-}
-
-TEST(FitPartnerDirection, EitherPersonLeadsInASymmetricClass) {
-  dataset::Dataset dataset = Reachers();
-  for (dataset::Sequence& sequence : dataset.sequences) SwapRoles(&sequence);
-  const auto learn = [&](int interaction_class) {
-    for (dataset::Sequence& sequence : dataset.sequences) {
-      sequence.interaction_class = interaction_class;
-    }
-    const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
-    return DegreesOff(*regression, Pair(50, 0).pair.leader, {0, 0, -1});
-  };
-  EXPECT_GT(learn(0), 45);  // the other leader faces the partner
-  EXPECT_LT(learn(1), 30);
-}
-
 TEST(FitPartnerDirection, ReturnsNothingWithoutHips) {
   dataset::Dataset dataset = Reachers();
   EXPECT_FALSE(FitPartnerDirection(dataset, {}).has_value());

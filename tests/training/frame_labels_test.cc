@@ -50,11 +50,6 @@ TEST(FrameLabelsTest, AvoidedClassesAreBelowZeroWhereTheyAreAbsent) {
   EXPECT_THAT(OfClass(weights, 0), ElementsAre(1, 1, 1, 1, 1, -1, -1, -1));
 }
 
-TEST(FrameLabelsTest, UnlabelledClassesAreZeroThroughout) {
-  base::Random random(1);
-  EXPECT_THAT(DrawFrameLabels(Labelled(), kClasses, {0, 1, 1}, &random), Each(0));
-}
-
 TEST(FrameLabelsTest, OnlyEdgesWithinTheClipShift) {
   base::Random random(1);
   bool shifted = false;

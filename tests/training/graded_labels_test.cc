@@ -1,10 +1,9 @@
-#include "model/training/graded_labels.h"
-
 #include <gmock/gmock.h>
 
 #include <set>
 #include <string>
 
+#include "model/training/sampler.h"
 #include "tests/training/made_up_dataset.h"
 
 namespace duet::training {
@@ -66,26 +65,6 @@ TEST(GradedLabelsTest, OwnWeightScalesTheCapturedReaction) {
   EXPECT_GT(checked, 20);
 }
 
-TEST(GradedLabelsTest, AvoidingAnotherClassLeavesTheCapturedReaction) {
-  const dataset::Dataset dataset = MadeUpDataset();
-  int checked = 0;
-  for (const Example& example : Draw(dataset, StartKnowledge::kNone)) {
-    if (KindOf(example) != "other avoided") continue;
-    EXPECT_TRUE(Near(example.target.all(), dataset.sequences[0].pair.follower.poses.all()));
-    ++checked;
-  }
-  EXPECT_GT(checked, 5);
-}
-
-TEST(GradedLabelsTest, EveryTargetBeginsAtAGivenStartPose) {
-  const dataset::Dataset dataset = MadeUpDataset();
-  const motion::Clip& follower = dataset.sequences[0].pair.follower;
-  const std::vector<motion::Vec3> first(follower.poses[0].begin(), follower.poses[0].end());
-  for (const Example& example : Draw(dataset, StartKnowledge::kPose)) {
-    EXPECT_TRUE(Near(example.target[0], first));
-  }
-}
-
 TEST(GradedLabelsTest, OtherReactionsAreMovedToThePlaceOfThisOne) {
   dataset::Dataset dataset = MadeUpDataset();
   // The same scene, moved and turned: its follower must be moved back to this place.
@@ -104,14 +83,6 @@ TEST(GradedLabelsTest, OtherReactionsAreMovedToThePlaceOfThisOne) {
     ++checked;
   }
   EXPECT_GT(checked, 2);
-}
-
-TEST(GradedLabelsTest, SingleClassDoesNotChange) {
-  dataset::Dataset dataset = MadeUpDataset(1);
-  base::Random random(1, 1);
-  Example example = CapturedExample(dataset, dataset.sequences[0], StartKnowledge::kNone);
-  GradeLabels(dataset, dataset.sequences, &random, &example);
-  EXPECT_TRUE(example.single);
 }
 
 }  // namespace

@@ -140,53 +140,12 @@ TEST_F(LoneLeaderTest, FollowerOfARestingLeaderGoesBackUnlessItsLabelsHaveTimes)
   EXPECT_GT(last_distance({{0, 0, 18}}), 1.7);
 }
 
-TEST_F(LoneLeaderTest, FollowerSharesTheFloorOfTheLeader) {
-  const dataset::Sequence pair = Replaced(StandingAt(40, {0, 2, 0}, 0));
-  EXPECT_NEAR(LowestFoot(*dataset_.skeleton.feet, pair.pair.follower.poses),
-              LowestFoot(*dataset_.skeleton.feet, pair.pair.leader.poses), 0.02);
-}
-
-TEST_F(LoneLeaderTest, DrawsPartsOfALeaderAndItsMirrorImage) {
-  const Poses leader = SwayingMotion(40, kRate);
-  augmentation_.mirror = 0.5;
-  int mirrored = 0;
-  std::vector<int> firsts;
-  const int frames = Captured().pair.leader.frame_count();
-  for (uint64_t seed = 0; seed < 60; ++seed) {
-    const Poses part = Replaced(leader, seed).pair.leader.poses;
-    int found = -1;
-    for (int first = 0; first + frames <= 40; ++first) {
-      if (motion::Part(leader, first, frames) == part) found = first;
-    }
-    if (found < 0)
-      ++mirrored;
-    else
-      firsts.push_back(found);
-  }
-  EXPECT_NEAR(mirrored, 30, 15);
-  EXPECT_LT(*std::min_element(firsts.begin(), firsts.end()), 5);
-  EXPECT_GT(*std::max_element(firsts.begin(), firsts.end()), 40 - frames - 5);
-}
-
 TEST_F(LoneLeaderTest, ALeaderThatIsShorterThanTheClipIsNotUsed) {
   const dataset::Sequence captured = Captured();
   const int frames = captured.pair.leader.frame_count();
   const dataset::Sequence pair = Replaced(StandingAt(frames - 1, {5, 0, 0}, 1));
   EXPECT_EQ(pair.pair.leader.poses, captured.pair.leader.poses);
   EXPECT_EQ(pair.pair.follower.poses, captured.pair.follower.poses);
-}
-
-TEST_F(LoneLeaderTest, GetsTheNoiseOfACapturedLeader) {
-  augmentation_.noise = 0.02;
-  const Poses noisy = Replaced(StandingAt(40, {}, 0)).pair.leader.poses;
-  const Poses clean = StandingAt(noisy.frame_count(), {}, 0);
-  double sum = 0;
-  for (size_t i = 0; i < clean.all().size(); ++i) {
-    const double off = Distance(clean.all()[i], noisy.all()[i]);
-    sum += off * off;
-  }
-  const double count = static_cast<double>(clean.all().size());
-  EXPECT_NEAR(std::sqrt(sum / count / 3), 0.02, 0.003);
 }
 
 TEST_F(LoneLeaderTest, LeadersAndOptionsMustFit) {
@@ -210,6 +169,51 @@ TEST_F(LoneLeaderTest, LeadersAndOptionsMustFit) {
   EXPECT_THAT(refusal(), HasSubstr("leaders.share: expected a share above 0"));
   options_ = SmallOptions();  // the paper's generator
   EXPECT_THAT(refusal(), HasSubstr("of a sampling generator"));
+}
+
+constexpr int kReactionFrames = 45;
+
+std::vector<double> Reached(const std::vector<double>& acting, uint64_t seed) {
+  base::Random random(seed);
+  return ReactionFrames(acting, 0, kReactionFrames, kRate, &random);
+}
+
+TEST(ReactionPaceTest, BesideALeaderWhoRestsTheFollowerGoesBackAndSways) {
+  const std::vector<double> resting(150, 0);
+  int recovered = 0;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    base::Random random(seed);
+    const std::vector<double> reached = ReactionFrames(resting, 0, 150, kRate, &random);
+    for (size_t t = 1; t < reached.size(); ++t) {
+      const double before = reached[t - 1];
+      EXPECT_TRUE(before <= 6.7 || std::abs(reached[t] - before + 0.7) < 1e-9) << seed << ' ' << t;
+    }
+    if (reached.front() > 6 && reached.front() < 60) {
+      ++recovered;
+      EXPECT_LE(reached.back(), 6);
+    }
+    if (reached.front() <= 6) {
+      const auto [least, most] = std::minmax_element(reached.begin(), reached.end());
+      EXPECT_NEAR(*least, 0, 0.1);
+      EXPECT_NEAR(*most, 6, 0.1);  // 0.4 s
+    }
+  }
+  EXPECT_GT(recovered, 3);
+}
+
+TEST(ReactionPaceTest, AfterItsEndAReactionGoesBackAndComesAgain) {
+  const std::vector<double> acting(200, 1);
+  base::Random random(1);
+  const std::vector<double> reached = ReactionFrames(acting, 20, 180, kRate, &random);
+  EXPECT_THAT(reached, testing::Each(testing::Ge(0)));
+  EXPECT_THAT(reached, testing::Each(testing::Le(179)));
+  std::vector<double> early = Reached(acting, 1);
+  EXPECT_LE(*std::max_element(early.begin(), early.end()), kReactionFrames - 1);
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    early = Reached(acting, seed);
+    if (early.front() < kReactionFrames / 2.0) continue;
+    EXPECT_LT(early.back(), kReactionFrames - 1.5) << seed;  // on its way back
+  }
 }
 
 }  // namespace

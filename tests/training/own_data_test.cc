@@ -85,14 +85,6 @@ class OwnDataTest : public ::testing::Test {
   dataset::Dataset dataset_;
 };
 
-TEST_F(OwnDataTest, DefaultConfigurationTrainsOnOwnData) {
-  TrainAndAsk("default", {{"epochs", "2"},
-                          {"generator.slice_features", "4"},
-                          {"generator.encoder_hidden", "4"},
-                          {"generator.attention", "8"},
-                          {"discriminator.hidden", "4"}});
-}
-
 TEST_F(OwnDataTest, SamplingConfigurationTrainsOnOwnData) {
   TrainAndAsk("flow", {{"epochs", "2"},
                        {"flow.passes", "1"},

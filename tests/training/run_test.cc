@@ -7,10 +7,8 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "model/body/limbs.h"
-#include "model/checkpoint/critic_tensors.h"
+#include "model/checkpoint/architecture.h"
 #include "model/dataset/lone_leaders.h"
-#include "model/engine/leader_statistics.h"
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/named_configs.h"
 #include "model/training/run_log.h"
@@ -78,85 +76,15 @@ TEST_F(RunTest, WritesACheckpointThatAnswers) {
 
 TEST_F(RunTest, LongTakesAreTrainedOnInWindows) {
   UseFlow().window_seconds = 0.4;  // 6 frames
-  FlowOf(&plan_.options).stride_seconds = 0.2;
+  FlowOf(&plan_.options).stride_seconds = FlowOf(&plan_.options).lookahead_seconds = 0.2;
   for (dataset::Sequence& take : dataset_.sequences) {
     take.labels = {{take.interaction_class, 0, 6}, {2, 4, take.pair.leader.frame_count()}};
   }
   const checkpoint::Checkpoint checkpoint = Train();
   EXPECT_EQ(checkpoint.manifest.model.window_frames, 6);
+  EXPECT_EQ(checkpoint.manifest.model.lookahead_frames, 3);  // at 15 Hz
   EXPECT_EQ(checkpoint.manifest.training.at("sequences"), "7");
   EXPECT_EQ(checkpoint.manifest.training.at("flow.window_seconds"), "0.4");
-}
-
-TEST_F(RunTest, ReportsTheErrorByPositionInTakesThatAreHeldBack) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 2;
-  plan_.options.validation.subjects = {"s02"};
-  FlowOf(&plan_.options).window_seconds = 2;
-  FlowOf(&plan_.options).stride_seconds = 2;
-  for (dataset::Sequence& take : dataset_.sequences) {
-    take.pair.leader.poses = SwayingMotion(170, dataset_.frame_rate_hz);
-    take.pair.follower.poses = take.pair.leader.poses;
-  }
-  ASSERT_THAT(Go(), IsOk());
-  const std::string log = ReadTestFile(plan_.folder / "log.csv");
-  EXPECT_THAT(log, HasSubstr(",whole_answers,error_0s,error_5s\n1,"));
-  std::vector<std::string> rows = absl::StrSplit(log, '\n', absl::SkipEmpty());
-  ASSERT_EQ(rows.size(), 3u);
-  for (size_t epoch = 1; epoch <= 2; ++epoch) {
-    const std::vector<std::string> fields = absl::StrSplit(rows[epoch], ',');
-    ASSERT_EQ(fields.size(), 13u);
-    for (const size_t position : {11u, 12u}) EXPECT_GT(std::stod(fields[position]), 0);
-  }
-  EXPECT_THAT(progress_.str(),
-              HasSubstr("all: last epoch: error by position in whole takes, 5 s each: 0."));
-  plan_.folder = folder_.path() / "none_held_back";
-  plan_.options.validation.subjects.clear();
-  ASSERT_THAT(Go(), IsOk());
-  EXPECT_THAT(ReadTestFile(plan_.folder / "log.csv"), HasSubstr(",whole_answers\n1,"));
-}
-
-TEST_F(RunTest, NotesFollowersOfAnotherSize) {
-  UseFlow();
-  for (dataset::Sequence& take : dataset_.sequences) {
-    motion::Poses& follower = take.pair.follower.poses;
-    for (int t = 0; t < follower.frame_count(); ++t) {
-      const motion::Vec3 root = follower.at(t, dataset_.skeleton.root);
-      for (motion::Vec3& joint : follower[t]) joint = root + (joint - root) * 0.9f;
-    }
-  }
-  const checkpoint::Checkpoint checkpoint = Train();
-  const std::vector<double>& ratios = checkpoint.manifest.model.bone_ratios;
-  ASSERT_EQ(ratios.size(), dataset_.skeleton.bones.size());
-  EXPECT_NEAR(ratios[0], 0.9, 0.02);
-}
-
-TEST_F(RunTest, NotesTheClassesInWhichPeopleFaceEachOther) {
-  UseFlow();
-  for (dataset::Sequence& take : dataset_.sequences) {
-    const motion::Poses& leader = take.pair.leader.poses;
-    take.labels = {{0, 0, 12}};
-    take.interaction_class = 0;
-    for (int t = 0; t < leader.frame_count(); ++t) {
-      const motion::Vec3 root = leader.at(t, dataset_.skeleton.root);
-      const motion::Vec3 ahead = body::Facing(*dataset_.skeleton.hips, leader[t]);
-      for (int j = 0; j < leader.joint_count(); ++j) {
-        // Turned round, and a little farther.
-        take.pair.follower.poses.at(t, j) = root + ahead + RotateY(leader.at(t, j) - root, 3.49);
-      }
-    }
-  }
-  const checkpoint::Checkpoint checkpoint = Train();
-  const auto& facing = checkpoint.manifest.model.facing_classes;
-  ASSERT_EQ(facing.size(), 1u);
-  EXPECT_EQ(facing[0].interaction_class, "kick");
-  EXPECT_NEAR(facing[0].degrees, 15, 8);
-}
-
-TEST_F(RunTest, NotesTheLookaheadOfItsWindows) {
-  UseFlow().lookahead_seconds = 0.2;
-  const checkpoint::Checkpoint checkpoint = Train();
-  EXPECT_EQ(checkpoint.manifest.model.lookahead_frames, 3);  // at 15 Hz
 }
 
 TEST_F(RunTest, TrainsACriticAfterTheGenerator) {
@@ -259,15 +187,6 @@ TEST_F(RunTest, KeepsAShareOfTheWeightsThatItBeganWith) {
   EXPECT_EQ(written[2].manifest.training.at("flow.kept_share"), "0.4");
 }
 
-TEST_F(RunTest, NotesLeadersWithoutFollowers) {
-  UseFlow().leaders.share = 0.5;
-  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
-  const checkpoint::Checkpoint checkpoint = Train();
-  EXPECT_EQ(checkpoint.manifest.training.at("leaders.share"), "0.5");
-  EXPECT_EQ(checkpoint.manifest.training.at("leaders"),
-            "1 " + dataset::DigestOf(dataset_.lone_leaders));
-}
-
 TEST_F(RunTest, AStateOfOtherLeadersIsRejected) {
   plan_.options = SmallFlowOptions();
   FlowOf(&plan_.options).leaders.share = 0.5;
@@ -276,14 +195,7 @@ TEST_F(RunTest, AStateOfOtherLeadersIsRejected) {
   std::filesystem::remove_all(CheckpointFolder(plan_));
   dataset_.lone_leaders[0].poses.at(7, 7).x += 0.01f;
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kFailedPrecondition,
-                             HasSubstr("other options or data: the model: ")));
-}
-
-TEST_F(RunTest, LeadersMustFitTheOptionsBeforeAnythingIsWritten) {
-  plan_.options = SmallFlowOptions();
-  FlowOf(&plan_.options).leaders.share = 0.5;
-  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("leaders.share")));
-  EXPECT_FALSE(std::filesystem::exists(plan_.folder));
+                             HasSubstr("other options or data: expected \"leaders\": \"1 ")));
 }
 
 TEST_F(RunTest, RejectsTheCheckpointOfAnotherModel) {
@@ -298,35 +210,6 @@ TEST_F(RunTest, RejectsTheCheckpointOfAnotherModel) {
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("waltz")));
   plan_.from = folder_.path() / "nowhere";
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("nowhere")));
-}
-
-TEST_F(RunTest, CheckpointHasTheStatisticsOfItsTrainingLeaders) {
-  // Held-out people are not training leaders.
-  for (motion::Vec3& joint : dataset_.sequences[1].pair.leader.poses.all()) joint = joint * 3;
-  ASSERT_EQ(dataset_.sequences[1].subjects.front(), "s02");
-  std::vector<const motion::Poses*> leaders;
-  for (const dataset::Sequence& sequence : dataset_.sequences) {
-    if (sequence.subjects.front() != "s02") leaders.push_back(&sequence.pair.leader.poses);
-  }
-  const engine::LeaderStatistics wanted =
-      engine::FitLeaderStatistics(dataset_.skeleton, leaders, dataset_.frame_rate_hz);
-  for (const TrainingOptions& options : {SmallOptions(), SmallFlowOptions()}) {
-    plan_.options = options;
-    plan_.options.epochs = 1;
-    plan_.options.validation.subjects = {"s02"};
-    plan_.folder =
-        folder_.path() / (std::holds_alternative<FlowTraining>(options.method) ? "flow" : "paper");
-    const checkpoint::Checkpoint checkpoint = Train();
-    ASSERT_TRUE(checkpoint.manifest.model.leader_statistics.has_value());
-    const engine::LeaderStatistics& got = *checkpoint.manifest.model.leader_statistics;
-    EXPECT_EQ(got.scale, wanted.scale);
-    ASSERT_EQ(got.features.size(), wanted.features.size());
-    for (std::size_t i = 0; i < wanted.features.size(); ++i) {
-      EXPECT_EQ(got.features[i].name, wanted.features[i].name);
-      EXPECT_EQ(got.features[i].mean, wanted.features[i].mean);
-      EXPECT_EQ(got.features[i].deviation, wanted.features[i].deviation);
-    }
-  }
 }
 
 TEST_F(RunTest, SamplingGeneratorWritesACheckpointThatAnswers) {
@@ -357,8 +240,7 @@ TEST_F(RunTest, FinishedRunIsNotRepeated) {
 }
 
 TEST_F(RunTest, DivergenceIsReportedNotSaved) {
-  PaperOf(&plan_.options).losses.reconstruction = "l2";
-  dataset_.sequences[0].pair.follower.at(0, 0).x = 1e30f;  // its square overflows a float
+  dataset_.sequences[0].pair.follower.at(0, 0).x = 1e38f;  // the losses overflow a float
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInternal, HasSubstr("no longer finite")));
   EXPECT_FALSE(std::filesystem::exists(CheckpointFolder(plan_)));
   EXPECT_FALSE(std::filesystem::exists(plan_.folder / "state"));
@@ -398,24 +280,10 @@ TEST_F(RunTest, TellsItsLengthAndWhyTheLossJumps) {
   }
 }
 
-TEST_F(RunTest, UnknownSubjectIsRejectedBeforeAnythingIsWritten) {
-  plan_.options.validation.subjects = {"s09"};
-  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("s09")));
-  EXPECT_FALSE(std::filesystem::exists(plan_.folder));
-}
-
 TEST_F(RunTest, InvalidManifestIsRejectedBeforeTraining) {
   plan_.model_name = "my studio";
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\"my studio\"")));
   EXPECT_FALSE(std::filesystem::exists(plan_.folder));
-}
-
-TEST_F(RunTest, TrainsOnClassesOfTheDataSet) {
-  dataset_.classes = {"bow", "lift", "spin"};
-  plan_.options = *ParseConfig(FindConfig("default")->json,
-                               {{"epochs", "1"}, {"generator.encoder_hidden", "4"}});
-  const checkpoint::Checkpoint checkpoint = Train();
-  EXPECT_EQ(checkpoint.manifest.model.touching_classes, std::vector<std::string>{"lift"});
 }
 
 TEST(RunLogTest, ResumingDropsRowsOfLostEpochs) {
@@ -431,18 +299,6 @@ TEST(RunLogTest, ResumingDropsRowsOfLostEpochs) {
   const std::string text = ReadTestFile(folder / "log.csv");
   EXPECT_THAT(text, HasSubstr("\n2,"));
   EXPECT_THAT(text, Not(HasSubstr("\n3,")));
-}
-
-TEST(ProgressLineTest, ShowsProgressAndRemainingTime) {
-  EpochReport report;
-  report.epoch = 5;
-  report.epochs = 10;
-  report.generator = 1.5;
-  report.seconds = 30;
-  report.validation_afd = std::nan("");
-  report.validation_afd_pose = std::nan("");
-  EXPECT_EQ(ProgressLine("all", report),
-            "all [############............] epoch 5/10  loss 1.5000  2:30 left");
 }
 
 }  // namespace

@@ -79,14 +79,6 @@ double Distance(const StillClip& clip, int frame) {
   return Norm(pair.follower.at(frame, root) - pair.leader.at(frame, root));
 }
 
-TEST(StillnessTest, WithoutSharesTheClipStaysAsCaptured) {
-  const StillClip clip = Draw({}, 3);
-  EXPECT_EQ(clip.sequence.pair.leader.poses, Reaction().pair.leader.poses);
-  EXPECT_EQ(clip.sequence.pair.follower.poses, Reaction().pair.follower.poses);
-  EXPECT_FALSE(clip.amid);
-  EXPECT_FALSE(clip.unlabelled);
-}
-
 TEST(StillnessTest, ClipsAreAtMostAsLongAsAWindowAndBonesKeepTheirLengths) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   FlowTraining::Stillness options;
@@ -205,16 +197,6 @@ TEST(StillnessTest, AnEndBeginsInTheReactionAndRests) {
     EXPECT_GE(FrameOf(Reaction().pair.follower.poses, follower, 0), kCaptured / 2) << seed;
     if (follower.frame_count() < kMost) continue;
     EXPECT_NEAR(Distance(clip, follower.frame_count() - 1), 1, 0.15) << seed;
-  }
-}
-
-TEST(StillnessTest, ALongReactionKeepsItsLength) {
-  for (uint64_t seed = 0; seed < 20; ++seed) {
-    base::Random random(seed);
-    const StillClip clip =
-        AddStillness(motion::SbuSkeleton(), Only(&FlowTraining::Stillness::pauses), kRate,
-                     kCaptured, &random, Reaction());
-    EXPECT_LE(clip.sequence.pair.leader.frame_count(), kCaptured);
   }
 }
 

@@ -41,7 +41,6 @@ inline TrainingOptions SmallOptions() {
   options.augmentation.swap_roles = 0.5;
   options.augmentation.body_scale = 0.05;
   options.augmentation.time_warp = 0.1;
-  options.augmentation.root_distance = 0.05;
   options.augmentation.yaw = 0.1;
   options.augmentation.leader_yaw = 0.1;
   options.augmentation.noise = 0.01;
