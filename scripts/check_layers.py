@@ -28,7 +28,7 @@ class Layer:
 MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
                 "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
-MEASURING = ("metrics", "protocol", "baselines", "judge", "report", "experiments")
+MEASURING = ("metrics", "baselines", "judge", "report", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "security",
           "server config", "service", "admin", "lifecycle")
 
@@ -66,17 +66,16 @@ LAYERS = (
           libraries=("torch",)),
     # Evaluation.
     Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "body", "dataset")),
-    Layer("protocol", "model/evaluation/protocol", sees=("base", "motion", "dataset", "metrics")),
     Layer("baselines", "model/evaluation/baselines",
-          sees=("base", "motion", "dataset", "metrics", "protocol")),
+          sees=("base", "motion", "dataset", "metrics")),
     Layer("judge", "model/evaluation/judge",
           sees=("base", "motion", "dataset", "engine", "checkpoint", "network",
-                "training", "metrics", "protocol"),
+                "training", "metrics"),
           source_libraries=("torch",)),
     Layer("report", "model/evaluation/report",
           sees=("base", "motion", "dataset", "metrics")),
     Layer("experiments", "model/evaluation/experiments",
-          sees=MOTION_FILES + MODELS + ("authoring", "body", "dataset", "metrics", "protocol",
+          sees=MOTION_FILES + MODELS + ("authoring", "body", "dataset", "metrics",
                                         "baselines", "judge", "report"),
           source_libraries=("torch",)),
     Layer("evaluation program", "model/evaluation/program",

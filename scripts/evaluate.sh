@@ -48,7 +48,7 @@ train() {
 sampled() {
   local models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" \
-    --runs "flow=${runs}/flow-1" --runs "flow=${runs}/flow-2" --id 14_samples
+    --runs "flow, seed 1=${runs}/flow-1" --runs "flow, seed 2=${runs}/flow-2" --id 14_samples
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --starts none \
     --untold-direction --id 14_samples_untold \
     --title "Many answers to one leader, where the partner's direction is not told"

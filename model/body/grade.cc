@@ -53,14 +53,6 @@ double TwistDegrees(const motion::Skeleton& skeleton, const Body& body, Pose pos
          std::atan2(double{Dot(Cross(hips, shoulders), up)}, double{Dot(hips, shoulders)});
 }
 
-double ShoulderTiltDegrees(const motion::Skeleton& skeleton, const Body& body, Pose pose) {
-  const Segment trunk = Trunk(skeleton, body, pose);
-  const Vec3 up = trunk.to - trunk.from;
-  const Vec3 across = At(pose, body.shoulders->left) - At(pose, body.shoulders->right);
-  return kDegreesPerRadian *
-         std::atan2(std::abs(double{Dot(across, up)}), double{Norm(Cross(across, up))});
-}
-
 bool PairMeter::CanMeasure(const motion::Skeleton& skeleton, const Body& body) {
   return skeleton.hips && skeleton.feet && body.shoulders && body.chest;
 }

@@ -98,12 +98,6 @@ class GradeSum {
 double TwistDegrees(const motion::Skeleton& skeleton, const Body& body,
                     absl::Span<const motion::Vec3> pose);
 
-// The angle between the line of the shoulders and a right angle to the trunk, 0 to 90 degrees:
-// large if one shoulder is far above the other. Requires hips, shoulders and chest. Shapes: pose
-// [joints].
-double ShoulderTiltDegrees(const motion::Skeleton& skeleton, const Body& body,
-                           absl::Span<const motion::Vec3> pose);
-
 }  // namespace duet::body
 
 #endif  // DUET_MODEL_BODY_GRADE_H_

@@ -1,6 +1,4 @@
-#include "model/evaluation/baselines/chain.h"
 #include "model/evaluation/baselines/class_models.h"
-#include "model/evaluation/baselines/motion_matrix.h"
 
 namespace duet::evaluation::baselines {
 namespace {

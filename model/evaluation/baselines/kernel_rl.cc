@@ -3,9 +3,7 @@
 #include <limits>
 
 #include "model/base/median.h"
-#include "model/evaluation/baselines/chain.h"
 #include "model/evaluation/baselines/class_models.h"
-#include "model/evaluation/baselines/motion_matrix.h"
 
 namespace duet::evaluation::baselines {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "model/base/random.h"
 #include "model/evaluation/baselines/class_models.h"
-#include "model/evaluation/baselines/motion_matrix.h"
 
 namespace duet::evaluation::baselines {
 namespace {

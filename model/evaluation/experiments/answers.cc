@@ -107,16 +107,6 @@ absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(
   return followers;
 }
 
-absl::Status SynthesizerMethod::Train(const dataset::Dataset& dataset, const std::vector<int>&) {
-  return CheckModelTakes(synthesizer_->description(), dataset, start_);
-}
-
-absl::StatusOr<motion::Poses> SynthesizerMethod::Predict(const dataset::Sequence& sequence) const {
-  return SynthesizeSequence(
-      *synthesizer_, sequence,
-      OneClass(synthesizer_->description().class_count(), sequence.interaction_class), start_);
-}
-
 LabelledLeader Ask(const dataset::Sequence& sequence, engine::LabelTrack labels,
                    const AskedSamples& asked, uint64_t seed) {
   return {&sequence,

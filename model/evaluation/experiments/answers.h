@@ -13,7 +13,6 @@
 #include "model/engine/label_track.h"
 #include "model/engine/synthesizer.h"
 #include "model/evaluation/metrics/scores.h"
-#include "model/evaluation/protocol/protocol.h"
 #include "model/motion/poses.h"
 
 namespace duet::evaluation::experiments {
@@ -29,28 +28,8 @@ enum class StartGiven { kNone, kRoot, kPose };
 absl::Status CheckModelTakes(const engine::ModelDescription& model, const dataset::Dataset& dataset,
                              StartGiven start);
 
-// A trained model as a row of the tables, run as on a server: in blended windows.
-class SynthesizerMethod : public protocol::Method {
- public:
-  // `synthesizer` was trained only on the fold's training sequences. Requires a model that accepts
-  // a follower start unless `start` is kNone.
-  SynthesizerMethod(std::string name, std::shared_ptr<const engine::Synthesizer> synthesizer,
-                    StartGiven start)
-      : name_(std::move(name)), synthesizer_(std::move(synthesizer)), start_(start) {}
-
-  std::string name() const override { return name_; }
-  // Checks that the model fits the data; the training is done already.
-  absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) override;
-  absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override;
-  bool reads_first_pose() const override { return start_ != StartGiven::kNone; }
-
- private:
-  std::string name_;
-  std::shared_ptr<const engine::Synthesizer> synthesizer_;
-  StartGiven start_;
-};
-
-// The follower for a leader and any label vector ([classes]), made in the same way. Errors: those
+// The follower for a leader and any label vector ([classes]), as a server makes it: in blended
+// windows. Errors: those
 // of the network.
 absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synthesizer,
                                                  const dataset::Sequence& sequence,

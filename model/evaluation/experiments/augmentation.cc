@@ -5,12 +5,11 @@
 #include <cstddef>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/judge/motion_classifier.h"
 #include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/metrics/scores.h"
 #include "model/training/augment.h"
@@ -41,30 +40,13 @@ std::vector<float> DrawLabels(int classes, int own, bool mix, base::Random* rand
   return labels;
 }
 
-// A class's name as part of a file's.
-std::string FileName(std::string name) {
-  for (char& c : name) {
-    if (!absl::ascii_isalnum(static_cast<unsigned char>(c))) c = '_';
-  }
-  return name;
-}
-
-double Mean(const std::vector<double>& values) { return base::Summarise(values).mean; }
-double Deviation(const std::vector<double>& values) { return base::Summarise(values).deviation; }
-double ShareAboveZero(const std::vector<double>& values) {
-  const auto above = std::count_if(values.begin(), values.end(), [](double v) { return v > 0; });
-  return values.empty() ? NAN : static_cast<double>(above) / static_cast<double>(values.size());
-}
-
-template <typename Rows>
-auto Find(Rows& rows, const std::string& name) {
-  return std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.first == name; });
-}
+constexpr char kCapturedRow[] = "captured";
 
 // A row of the tables: the training data of a classifier and its epochs.
 struct Condition {
   std::string row;
-  TrainingMaterial material;
+  std::vector<int> captured;  // sequences of the data set
+  bool synthetic;             // also, or only, the half's synthetic motions
   int64_t epochs;
 };
 
@@ -80,11 +62,53 @@ std::vector<Condition> Conditions(const DataHalf& half, const HalfOptions& optio
   const int64_t epochs = options.epochs;
   const std::string& both = options.synthetic_row;
   return {
-      {kCapturedRow, {captured, {}}, epochs},
-      {both, {captured, half.synthetic}, SameSteps(epochs, own, own + made)},
-      {absl::StrCat(kCapturedRow, ", longer"), {captured, {}}, SameSteps(epochs, own + made, own)},
-      {absl::StrCat(both, ", longer"), {captured, half.synthetic}, epochs},
-      {"synthetic alone", {{}, half.synthetic}, SameSteps(epochs, own, made)}};
+      {kCapturedRow, captured, false, epochs},
+      {both, captured, true, SameSteps(epochs, own, own + made)},
+      {absl::StrCat(kCapturedRow, ", longer"), captured, false, SameSteps(epochs, own + made, own)},
+      {absl::StrCat(both, ", longer"), captured, true, epochs},
+      {"synthetic alone", {}, true, SameSteps(epochs, own, made)}};
+}
+
+// The accuracies of a classifier on captured followers: of each class, then their mean.
+absl::StatusOr<std::vector<double>> Accuracies(const dataset::Dataset& dataset,
+                                               const DataHalf& half, const Condition& condition,
+                                               uint64_t seed) {
+  // Synthetic pairs have their own leaders: they are added to the data set like captured ones.
+  dataset::Dataset all = dataset;
+  std::vector<int> train = condition.captured;
+  for (size_t i = 0; condition.synthetic && i < half.synthetic.size(); ++i) {
+    train.push_back(static_cast<int>(all.sequences.size()));
+    all.sequences.push_back(half.synthetic[i]);
+  }
+  judge::MotionClassifierOptions options;
+  options.epochs = condition.epochs;
+  options.seed = seed;
+  DUET_TRY(judge::MotionClassifier classifier,
+           judge::MotionClassifier::Train(all, metrics::CapturedMotions(all, train), options));
+  metrics::Confusion confusion(dataset.class_count());
+  confusion.AddLikeliest(
+      metrics::ClassesOf(dataset, half.split.test),
+      classifier.Probabilities(all, metrics::CapturedMotions(all, half.split.test)));
+  std::vector<double> accuracies = confusion.ClassAccuracies();
+  accuracies.push_back(confusion.MeanClassAccuracy());
+  return accuracies;
+}
+
+double ShareAboveZero(const std::vector<double>& values) {
+  const auto above = std::count_if(values.begin(), values.end(), [](double v) { return v > 0; });
+  return static_cast<double>(above) / static_cast<double>(values.size());
+}
+
+// A figure of each column over trials. Shapes: trials [trials][columns], at least one.
+template <typename Figure>
+std::vector<double> OverTrials(const std::vector<std::vector<double>>& trials, Figure figure) {
+  std::vector<double> figures;
+  for (size_t c = 0; c < trials.front().size(); ++c) {
+    std::vector<double> values;
+    for (const std::vector<double>& trial : trials) values.push_back(trial[c]);
+    figures.push_back(figure(values));
+  }
+  return figures;
 }
 
 }  // namespace
@@ -107,8 +131,7 @@ std::vector<SyntheticJob> PlanSyntheticSet(const dataset::Dataset& dataset,
       job.sequence =
           Augment(dataset, dataset.sequences[static_cast<size_t>(leader)], Variations(), &random);
       job.sequence.pair.follower.poses = {};
-      job.sequence.id = absl::StrFormat(
-          "%s-%03d", FileName(dataset.classes[static_cast<size_t>(c)]), jobs.size() + 1);
+      job.sequence.id = absl::StrCat(dataset.classes[static_cast<size_t>(c)], "-", jobs.size() + 1);
       job.labels = DrawLabels(dataset.class_count(), c, i >= options.match, &random);
       jobs.push_back(std::move(job));
     }
@@ -134,96 +157,52 @@ absl::StatusOr<std::vector<dataset::Sequence>> SynthesizeJobs(
   return answered;
 }
 
-void Trials::Add(const std::string& row, const std::string& trial, std::vector<double> values) {
-  auto found = Find(rows_, row);
-  if (found == rows_.end()) found = rows_.insert(rows_.end(), {row, {}});
-  found->second[trial] = std::move(values);
-}
-
-report::Table Trials::EmptyTable(const std::string& title) const {
-  report::Table table{title, columns_};
-  table.decimals = 3;
-  return table;
-}
-
-std::vector<double> Trials::OverTrials(const Row& row, Figure figure) const {
-  std::vector<double> figures;
-  for (size_t c = 0; c < columns_.size(); ++c) {
-    std::vector<double> values;
-    for (const auto& [trial, of_trial] : row) values.push_back(of_trial[c]);
-    figures.push_back(figure(values));
-  }
-  return figures;
-}
-
-report::Table Trials::Means(const std::string& title) const {
-  report::Table table = EmptyTable(title);
-  table.best = report::Best::kHighest;
-  for (const auto& [name, row] : rows_) table.rows.push_back({name, OverTrials(row, Mean)});
-  return table;
-}
-
-report::Table Trials::Deviations(const std::string& title) const {
-  report::Table table = EmptyTable(title);
-  for (const auto& [name, row] : rows_) table.rows.push_back({name, OverTrials(row, Deviation)});
-  return table;
-}
-
-report::Table Trials::Gains(const std::string& title, const std::string& base) const {
-  report::Table table = EmptyTable(title);
-  const auto found = Find(rows_, base);
-  for (auto row = rows_.begin(); found != rows_.end() && row != rows_.end(); ++row) {
-    if (row == found) continue;
-    Row gains;
-    for (const auto& [trial, values] : row->second) {
-      const auto before = found->second.find(trial);
-      if (before == found->second.end()) continue;
-      for (size_t c = 0; c < values.size(); ++c) {
-        gains[trial].push_back(values[c] - before->second[c]);
-      }
-    }
-    table.rows.push_back({row->first, OverTrials(gains, Mean)});
-    table.rows.push_back({row->first + ", deviation", OverTrials(gains, Deviation)});
-    table.rows.push_back({row->first + ", share above 0", OverTrials(gains, ShareAboveZero)});
-  }
-  return table;
-}
-
-absl::StatusOr<std::vector<double>> ClassifierAccuracy(
-    const dataset::Dataset& dataset, const TrainingMaterial& material, const std::vector<int>& test,
-    const judge::MotionClassifierOptions& options) {
-  // Synthetic pairs have their own leaders: they are added to the data set like captured ones.
-  dataset::Dataset all = dataset;
-  std::vector<int> train = material.captured;
-  for (const dataset::Sequence& sequence : material.synthetic) {
-    train.push_back(static_cast<int>(all.sequences.size()));
-    all.sequences.push_back(sequence);
-  }
-  DUET_TRY(judge::MotionClassifier classifier,
-           judge::MotionClassifier::Train(all, metrics::CapturedMotions(all, train), options));
-  metrics::Confusion confusion(dataset.class_count());
-  confusion.AddLikeliest(metrics::ClassesOf(dataset, test),
-                         classifier.Probabilities(all, metrics::CapturedMotions(all, test)));
-  std::vector<double> accuracy = confusion.ClassAccuracies();
-  accuracy.push_back(confusion.MeanClassAccuracy());
-  return accuracy;
-}
-
 absl::Status RunHalf(const dataset::Dataset& dataset, const DataHalf& half,
-                     const HalfOptions& options, std::ostream* progress, Trials* trials) {
+                     const HalfOptions& options, std::ostream* progress,
+                     std::vector<AccuracyRow>* rows) {
+  const std::vector<Condition> conditions = Conditions(half, options);
+  rows->resize(conditions.size());
   for (int repeat = 1; repeat <= options.repeats; ++repeat) {
-    for (const Condition& condition : Conditions(half, options)) {
-      judge::MotionClassifierOptions classifier;
-      classifier.epochs = condition.epochs;
-      classifier.seed = static_cast<uint64_t>(repeat);
-      DUET_TRY(std::vector<double> accuracy,
-               ClassifierAccuracy(dataset, condition.material, half.split.test, classifier));
-      *progress << "half " << half.seed << ", classifier " << repeat << ", " << condition.row
-                << ": " << accuracy.back() << std::endl;
-      trials->Add(condition.row, absl::StrCat(half.seed, "/", repeat), std::move(accuracy));
+    for (size_t i = 0; i < conditions.size(); ++i) {
+      AccuracyRow& row = (*rows)[i];
+      row.name = conditions[i].row;
+      DUET_TRY(row.trials.emplace_back(),
+               Accuracies(dataset, half, conditions[i], static_cast<uint64_t>(repeat)));
+      *progress << "half " << half.seed << ", classifier " << repeat << ", " << row.name << ": "
+                << row.trials.back().back() << std::endl;
     }
   }
   return absl::OkStatus();
+}
+
+std::vector<report::Table> AccuracyTables(const std::vector<std::string>& classes,
+                                          const std::vector<AccuracyRow>& rows) {
+  const auto mean = [](const std::vector<double>& values) { return base::Summarise(values).mean; };
+  const auto deviation = [](const std::vector<double>& values) {
+    return base::Summarise(values).deviation;
+  };
+  std::vector<report::Table> tables = {{"Accuracy on captured followers, mean over the trials"},
+                                       {"Accuracy, standard deviation over the trials"},
+                                       {"Gain over captured followers alone, paired"}};
+  for (report::Table& table : tables) {
+    table.columns = classes;
+    table.columns.emplace_back("mean");
+    table.decimals = 3;
+  }
+  tables[0].best = report::Best::kHighest;
+  for (const AccuracyRow& row : rows) {
+    tables[0].rows.push_back({row.name, OverTrials(row.trials, mean)});
+    tables[1].rows.push_back({row.name, OverTrials(row.trials, deviation)});
+    if (&row == &rows.front()) continue;
+    std::vector<std::vector<double>> gains = row.trials;
+    for (size_t t = 0; t < gains.size(); ++t) {
+      for (size_t c = 0; c < gains[t].size(); ++c) gains[t][c] -= rows.front().trials[t][c];
+    }
+    tables[2].rows.push_back({row.name, OverTrials(gains, mean)});
+    tables[2].rows.push_back({row.name + ", deviation", OverTrials(gains, deviation)});
+    tables[2].rows.push_back({row.name + ", share above 0", OverTrials(gains, ShareAboveZero)});
+  }
+  return tables;
 }
 
 }  // namespace duet::evaluation::experiments

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/evaluation/experiments/answers.h"
+#include "model/base/statistics.h"
 #include "model/evaluation/experiments/estimate.h"
+#include "model/evaluation/report/table.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -15,22 +17,13 @@ namespace {
 constexpr int kStepsAUnit = 4;
 // Of SweepWeights: -1, 0 and 1.
 constexpr size_t kMinusOne = 0, kZero = kStepsAUnit, kOne = 2 * kStepsAUnit;
+// Changes of the probability up to this count as level: a probability of 0 cannot fall.
+constexpr double kLevelChange = 1e-3;
 
-// The columns of the table.
-struct Column {
-  const char* name;
-  double LabelControl::*figure;
-};
-constexpr Column kColumns[] = {{"0 to 1: up", &LabelControl::raised_up},
-                               {"level", &LabelControl::raised_level},
-                               {"0 to -1: down", &LabelControl::lowered_down},
-                               {"level", &LabelControl::lowered_level},
-                               {"a step up", &LabelControl::steps_up},
-                               {"level", &LabelControl::steps_level},
-                               {"rank correlation", &LabelControl::rank_correlation}};
-
-double RaisedProbability(const SweepCurve& curve, size_t weight) {
-  return curve.probabilities[weight][static_cast<size_t>(curve.raised)];
+const std::vector<std::string>& ControlColumns() {
+  static const auto& columns = *new std::vector<std::string>{
+      "0 to 1: up", "level", "0 to -1: down", "level", "a step up", "level", "rank correlation"};
+  return columns;
 }
 
 // Ranks from 1; ties share the mean of theirs.
@@ -50,26 +43,64 @@ std::vector<double> Ranks(const std::vector<double>& values) {
   return ranks;
 }
 
-// Adds a curve's figures to the sums, which MeasureControl divides by the number of curves.
-void AddCurve(const SweepCurve& curve, LabelControl* sums) {
-  const auto change = [&](size_t from, size_t to) {
-    return RaisedProbability(curve, to) - RaisedProbability(curve, from);
-  };
+// The raised class's probability at each weight.
+std::vector<double> Raised(const SweepCurve& curve) {
+  std::vector<double> raised;
+  for (const auto& of_weight : curve.probabilities) {
+    raised.push_back(double{of_weight[static_cast<size_t>(curve.raised)]});
+  }
+  return raised;
+}
+
+// Shapes: returns [ControlColumns].
+std::vector<double> ControlOf(const SweepCurve& curve) {
+  const std::vector<double> p = Raised(curve);
   const auto level = [](double by) { return std::abs(by) <= kLevelChange ? 1.0 : 0.0; };
   const auto up = [](double by) { return by > kLevelChange ? 1.0 : 0.0; };
-  sums->raised_up += up(change(kZero, kOne));
-  sums->raised_level += level(change(kZero, kOne));
-  sums->lowered_down += up(change(kMinusOne, kZero));
-  sums->lowered_level += level(change(kMinusOne, kZero));
+  double steps_up = 0, steps_level = 0;
   for (size_t i = kZero; i < kOne; ++i) {
-    sums->steps_up += up(change(i, i + 1)) / kStepsAUnit;
-    sums->steps_level += level(change(i, i + 1)) / kStepsAUnit;
+    steps_up += up(p[i + 1] - p[i]) / kStepsAUnit;
+    steps_level += level(p[i + 1] - p[i]) / kStepsAUnit;
   }
-  std::vector<double> raised;
-  for (size_t i = 0; i < curve.probabilities.size(); ++i) {
-    raised.push_back(RaisedProbability(curve, i));
+  const double raised = p[kOne] - p[kZero], lowered = p[kZero] - p[kMinusOne];
+  return {up(raised),
+          level(raised),
+          up(lowered),
+          level(lowered),
+          steps_up,
+          steps_level,
+          Correlation(Ranks(SweepWeights()), Ranks(p))};
+}
+
+// The means of columns; NaN without rows.
+std::vector<double> Means(const std::vector<std::vector<double>>& rows, size_t columns) {
+  return rows.empty() ? std::vector<double>(columns, NAN) : report::ColumnMeans(rows);
+}
+
+void AddKind(const std::vector<std::string>& classes, const std::vector<SweepCurve>& curves,
+             bool own, const std::string& title, report::ResultSection* section) {
+  report::Table control{title, ControlColumns()}, probabilities{title + ": probabilities"};
+  for (const double weight : SweepWeights()) probabilities.columns.push_back(absl::StrCat(weight));
+  std::vector<std::vector<double>> all;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    std::vector<std::vector<double>> controls, raised;
+    for (const SweepCurve& curve : curves) {
+      if (curve.raised != static_cast<int>(c) || (curve.own == curve.raised) != own) continue;
+      controls.push_back(ControlOf(curve));
+      raised.push_back(Raised(curve));
+    }
+    control.rows.push_back({classes[c], Means(controls, ControlColumns().size())});
+    probabilities.rows.push_back({classes[c], Means(raised, SweepWeights().size())});
+    all.insert(all.end(), controls.begin(), controls.end());
   }
-  sums->rank_correlation += RankCorrelation(SweepWeights(), raised);
+  control.rows.push_back({"all", Means(all, ControlColumns().size())});
+  control.notes = {
+      "Shares of answers whose probability of the class goes the way its weight goes. Level: by "
+      "0.001 or less, either way. Steps: by 0.25, from weight 0 to 1. Rank correlation: "
+      "Spearman's, of weight and probability from -1 to 2, the mean over answers."};
+  probabilities.notes = {"The judges' mean probability of a class, by its weight."};
+  section->tables.push_back(std::move(control));
+  section->tables.push_back(std::move(probabilities));
 }
 
 }  // namespace
@@ -80,91 +111,11 @@ const std::vector<double>& SweepWeights() {
   return weights;
 }
 
-std::vector<float> SweepLabels(int classes, int own, int raised, double weight) {
-  std::vector<float> labels = OneClass(classes, own);
-  labels[static_cast<size_t>(raised)] = static_cast<float>(weight);
-  return labels;
-}
-
-LabelControl MeasureControl(const std::vector<SweepCurve>& curves) {
-  LabelControl control;
-  for (const SweepCurve& curve : curves) AddCurve(curve, &control);
-  const double count = curves.empty() ? NAN : static_cast<double>(curves.size());
-  for (const Column& column : kColumns) control.*column.figure /= count;
-  return control;
-}
-
-double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
-  return Correlation(Ranks(x), Ranks(y));
-}
-
-std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
-  std::vector<SweepCurve> selected;
-  for (const SweepCurve& curve : curves) {
-    const bool own = curve.own == curve.raised;
-    if (curve.raised == raised && own == (kind == SweepKind::kOwn)) selected.push_back(curve);
-  }
-  return selected;
-}
-
-std::vector<double> MeanProbabilities(const std::vector<SweepCurve>& curves, int of_class) {
-  std::vector<double> means;
-  for (size_t i = 0; i < SweepWeights().size(); ++i) {
-    double sum = 0;
-    for (const SweepCurve& curve : curves) {
-      sum += curve.probabilities[i][static_cast<size_t>(of_class)];
-    }
-    means.push_back(sum / static_cast<double>(curves.size()));
-  }
-  return means;
-}
-
-report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<SweepCurve>& curves, SweepKind kind) {
-  report::Table table{title};
-  for (const Column& column : kColumns) table.columns.push_back(column.name);
-  const auto add = [&table](const std::string& name, const std::vector<SweepCurve>& measured) {
-    const LabelControl control = MeasureControl(measured);
-    report::TableRow& row = table.rows.emplace_back(report::TableRow{name, {}});
-    for (const Column& column : kColumns) row.values.push_back(control.*column.figure);
-  };
-  std::vector<SweepCurve> all;
-  for (size_t c = 0; c < classes.size(); ++c) {
-    const std::vector<SweepCurve> selected = Select(curves, kind, static_cast<int>(c));
-    add(classes[c], selected);
-    all.insert(all.end(), selected.begin(), selected.end());
-  }
-  add("all", all);
-  table.notes = {
-      "Shares of answers whose probability of the class goes the way its weight goes. Level: by "
-      "0.001 or less, either way. Steps: by 0.25, from weight 0 to 1. Rank correlation: "
-      "Spearman's, of weight and probability from -1 to 2, the mean over answers."};
-  return table;
-}
-
-report::Table ProbabilityTable(const std::string& title, const std::vector<std::string>& classes,
-                               const std::vector<SweepCurve>& curves, SweepKind kind) {
-  report::Table table{title};
-  for (const double weight : SweepWeights()) table.columns.push_back(absl::StrCat(weight));
-  for (size_t c = 0; c < classes.size(); ++c) {
-    const int raised = static_cast<int>(c);
-    table.rows.push_back({classes[c], MeanProbabilities(Select(curves, kind, raised), raised)});
-  }
-  table.notes = {"The judges' mean probability of a class, by its weight."};
-  return table;
-}
-
 void AddSweep(const std::vector<std::string>& classes, const std::vector<SweepCurve>& curves,
               const std::string& told, report::ResultSection* section) {
-  for (const SweepKind kind : {SweepKind::kOwn, SweepKind::kAdded}) {
-    const std::string title = absl::StrCat(kind == SweepKind::kOwn ? "Own class alone, "
-                                                                   : "Another class beside the own "
-                                                                     "one, ",
-                                           told);
-    section->tables.push_back(ControlTable(title, classes, curves, kind));
-    section->tables.push_back(
-        ProbabilityTable(absl::StrCat(title, ": probabilities"), classes, curves, kind));
-  }
+  AddKind(classes, curves, true, absl::StrCat("Own class alone, ", told), section);
+  AddKind(classes, curves, false, absl::StrCat("Another class beside the own one, ", told),
+          section);
 }
 
 }  // namespace duet::evaluation::experiments

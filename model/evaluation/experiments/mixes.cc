@@ -1,16 +1,181 @@
 #include "model/evaluation/experiments/mixes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <map>
-#include <tuple>
 
 #include "absl/strings/str_cat.h"
+#include "absl/types/span.h"
+#include "model/base/angle.h"
 #include "model/base/statistics.h"
 #include "model/evaluation/experiments/estimate.h"
+#include "model/motion/filter.h"
 
 namespace duet::evaluation::experiments {
+namespace {
+
+using motion::Poses;
+using motion::Vec3;
+
+// Leaning back is measured against this many first frames.
+constexpr size_t kUprightFrames = 3;
+// A trunk that is shorter than this, seen from the front, has no lean.
+constexpr double kLeastTrunkMetres = 0.05;
+
+double Largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+double Smallest(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
+}
+
+// The largest rise of a series after any earlier value.
+double LargestRise(const std::vector<double>& values) {
+  double lowest = values.front(), rise = 0;
+  for (const double value : values) {
+    lowest = std::min(lowest, value);
+    rise = std::max(rise, value - lowest);
+  }
+  return rise;
+}
+
+Vec3 JointOf(absl::Span<const Vec3> pose, int joint) { return pose[static_cast<size_t>(joint)]; }
+
+// What changes over a clip, a value a frame. Metres; lean in degrees, backwards positive.
+struct Series {
+  std::vector<double> apart, hands_around, hand_around, hands_meet;  // distances from the leader
+  std::vector<double> more_reach, less_reach;  // of the hands towards the leader, past the root
+  std::vector<double> head, root, hips;        // away from the leader
+  std::vector<double> lean, raised_hand;
+};
+
+}  // namespace
+
+MeetingGeometry::MeetingGeometry(const motion::Skeleton& skeleton)
+    : skeleton_(skeleton), body_(body::FindBody(skeleton)) {}
+
+bool MeetingGeometry::possible() const {
+  return skeleton_.hips && body_.chest && body_.neck && body_.arms.size() == 2;
+}
+
+const std::vector<std::string>& MeetingGeometry::Features() {
+  static const auto* const kFeatures = new std::vector<std::string>{
+      "near",          "hands around",  "a hand around",   "hands meet",   "one hand out",
+      "hand out",      "hands out",     "head recoils",    "root recoils", "hips recoil",
+      "head retreats", "root retreats", "root approaches", "leans back",   "leans forward",
+      "hand raised"};
+  return *kFeatures;
+}
+
+std::vector<double> MeetingGeometry::Measure(const Poses& leader, const Poses& follower, Vec3 away,
+                                             double rate) const {
+  const Poses partner = motion::WithoutNoise(leader, rate);
+  const Poses poses = motion::WithoutNoise(follower, rate);
+  Series series;
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const absl::Span<const Vec3> self = poses[t], other = partner[t];
+    const Vec3 root = JointOf(self, skeleton_.root), chest = JointOf(self, *body_.chest);
+    const Vec3 spine = Lerp(JointOf(other, *body_.chest), JointOf(other, skeleton_.root), 0.5f);
+    const Vec3 between = root - JointOf(other, skeleton_.root);
+    series.apart.push_back(std::hypot(double{between.x}, double{between.z}));
+    std::vector<double> around, reach, raised;
+    double meet = std::numeric_limits<double>::infinity();
+    for (const body::Limb& arm : body_.arms) {
+      const Vec3 hand = JointOf(self, arm.end);
+      around.push_back(Distance(hand, spine));
+      reach.push_back(Dot(root - hand, away));
+      raised.push_back(hand.y - chest.y);
+      for (const body::Limb& held : body_.arms) {
+        meet = std::min(meet, double{Distance(hand, JointOf(other, held.end))});
+      }
+    }
+    series.hands_around.push_back(base::Mean(around));
+    series.hand_around.push_back(Largest(around));
+    series.hands_meet.push_back(meet);
+    series.more_reach.push_back(Largest(reach));
+    series.less_reach.push_back(Smallest(reach));
+    series.raised_hand.push_back(Largest(raised));
+    const Vec3 hips =
+        Lerp(JointOf(self, skeleton_.hips->left), JointOf(self, skeleton_.hips->right), 0.5f);
+    series.head.push_back(Dot(JointOf(self, body_.neck->head), away));
+    series.root.push_back(Dot(root, away));
+    series.hips.push_back(Dot(hips, away));
+    series.lean.push_back(base::kDegreesPerRadian *
+                          std::atan2(double{Dot(chest - root, away)},
+                                     std::max(kLeastTrunkMetres, double{chest.y - root.y})));
+  }
+  std::vector<double> uneven;
+  for (size_t t = 0; t < series.lean.size(); ++t) {
+    uneven.push_back(series.more_reach[t] - series.less_reach[t]);
+  }
+  const std::vector<double> upright(
+      series.lean.begin(), series.lean.begin() + static_cast<std::ptrdiff_t>(
+                                                     std::min(kUprightFrames, series.lean.size())));
+  return {-Smallest(series.apart),
+          -Smallest(series.hands_around),
+          -Smallest(series.hand_around),
+          -Smallest(series.hands_meet),
+          Largest(uneven),
+          Largest(series.more_reach),
+          Largest(series.less_reach),
+          LargestRise(series.head),
+          LargestRise(series.root),
+          LargestRise(series.hips),
+          Largest(series.head) - series.head.front(),
+          Largest(series.root) - series.root.front(),
+          series.root.front() - Smallest(series.root),
+          Largest(series.lean) - base::Mean(upright),
+          -Smallest(series.lean),
+          Largest(series.raised_hand)};
+}
+
+Vec3 AwayFromLeader(const dataset::Sequence& sequence, int root) {
+  Vec3 away = sequence.pair.follower.at(0, root) - sequence.pair.leader.at(0, root);
+  away.y = 0;
+  const float length = Norm(away);
+  return length > 0 ? away / length : Vec3{1, 0, 0};
+}
+
+double ClassGeometry::Own(int of_class, int other, size_t feature) const {
+  const auto a = static_cast<size_t>(of_class), b = static_cast<size_t>(other);
+  const double difference = means[a][feature] - means[b][feature];
+  const double spread =
+      std::sqrt((std::pow(deviations[a][feature], 2) + std::pow(deviations[b][feature], 2)) / 2);
+  return difference > spread ? difference : 0;
+}
+
+ClassGeometry MeasureClasses(const MeetingGeometry& geometry, const dataset::Dataset& dataset,
+                             const std::vector<int>& sequences) {
+  const size_t features = MeetingGeometry::Features().size();
+  // Shapes: [classes][features][sequences of the class].
+  std::vector<std::vector<std::vector<double>>> values(dataset.classes.size(),
+                                                       std::vector<std::vector<double>>(features));
+  for (const int index : sequences) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    const motion::ClipPair& pair = sequence.pair;
+    const std::vector<double> measured = geometry.Measure(
+        pair.leader.poses, pair.follower.poses, AwayFromLeader(sequence, dataset.skeleton.root),
+        pair.leader.frame_rate_hz);
+    for (size_t f = 0; f < features; ++f) {
+      values[static_cast<size_t>(sequence.interaction_class)][f].push_back(measured[f]);
+    }
+  }
+  ClassGeometry classes;
+  for (const auto& of_class : values) {
+    auto& means = classes.means.emplace_back();
+    auto& deviations = classes.deviations.emplace_back();
+    for (const std::vector<double>& of_feature : of_class) {
+      const base::MeanAndDeviation summary = base::Summarise(of_feature);
+      means.push_back(summary.mean);
+      deviations.push_back(summary.deviation);
+    }
+  }
+  return classes;
+}
+
 namespace {
 
 // A feature counts for a model whose single answers differ by at least this share of the captures'
@@ -57,10 +222,9 @@ std::map<std::pair<int, int>, std::vector<double>> SingleDifferences(
   return sums;
 }
 
-// What remains of one class's own geometry, and of how many features.
-std::pair<double, int> KeptOf(const MixedAnswer& answer, Ingredient which,
-                              const ClassGeometry& captured, const std::vector<double>& single) {
-  const bool is_own = which == Ingredient::kOwn;
+// What remains of one class's own geometry.
+double KeptOf(const MixedAnswer& answer, bool is_own, const ClassGeometry& captured,
+              const std::vector<double>& single) {
   const int kept = is_own ? answer.own : answer.other, lost = is_own ? answer.other : answer.own;
   const std::vector<double>& without = is_own ? answer.other_alone : answer.own_alone;
   std::vector<double> shares;
@@ -71,7 +235,7 @@ std::pair<double, int> KeptOf(const MixedAnswer& answer, Ingredient which,
     shares.push_back(
         std::clamp((answer.mixed[f] - without[f]) / difference, kLeastKept, kMostKept));
   }
-  return {base::Mean(shares), static_cast<int>(shares.size())};
+  return base::Mean(shares);
 }
 
 struct MixFigure {
@@ -80,9 +244,6 @@ struct MixFigure {
 };
 
 std::vector<MixFigure> MixFigures() {
-  const auto probability = [](int c, const MixedAnswer& answer) {
-    return double{answer.probabilities[static_cast<size_t>(c)]};
-  };
   return {{"weaker ingredient", [](auto&, const Kept& kept) { return kept.weaker(); }},
           {"both above half", [](auto&, const Kept& kept) { return kept.both(); }},
           {"own ingredient", [](auto&, const Kept& kept) { return kept.own; }},
@@ -92,8 +253,6 @@ std::vector<MixFigure> MixFigures() {
              const int likeliest = Likeliest(answer.probabilities);
              return AsNumber(likeliest != answer.own && likeliest != answer.other);
            }},
-          {"probability of own", [=](auto& a, auto&) { return probability(a.own, a); }},
-          {"probability of other", [=](auto& a, auto&) { return probability(a.other, a); }},
           {"deviation from average", [](auto& a, auto&) { return a.deviation; }},
           {"twisted", [](auto& a, auto&) { return a.twisted; }},
           {"overlap", [](auto& a, auto&) { return a.overlapping; }},
@@ -118,7 +277,6 @@ report::Table PairTable(const std::string& title, const std::vector<std::string>
                         const MixVariant& variant, const std::vector<Kept>& kept) {
   report::Table table = EstimateTable(absl::StrCat(title, ", ", variant.first, ", by pair"),
                                       {"weaker", "both", "third", "deviation"});
-  table.columns.insert(table.columns.end(), {"features of first", "of second"});
   std::map<std::pair<int, int>, std::vector<size_t>> rows;
   for (size_t i = 0; i < variant.second.size(); ++i) {
     rows[std::minmax(variant.second[i].own, variant.second[i].other)].push_back(i);
@@ -126,7 +284,7 @@ report::Table PairTable(const std::string& title, const std::vector<std::string>
   const std::vector<MixFigure> figures = MixFigures();
   for (const auto& [pair, indices] : rows) {
     std::vector<Estimate> estimates;
-    for (const size_t f : {0, 1, 4, 7}) {
+    for (const size_t f : {0, 1, 4, 5}) {
       std::vector<int> leaders;
       std::vector<double> values;
       for (const size_t i : indices) {
@@ -138,14 +296,6 @@ report::Table PairTable(const std::string& title, const std::vector<std::string>
     AddEstimates(absl::StrCat(classes[static_cast<size_t>(pair.first)], " + ",
                               classes[static_cast<size_t>(pair.second)]),
                  estimates, &table);
-    std::vector<double> first, second;
-    for (const size_t i : indices) {
-      const bool own_first = variant.second[i].own == pair.first;
-      first.push_back(own_first ? kept[i].own_features : kept[i].other_features);
-      second.push_back(own_first ? kept[i].other_features : kept[i].own_features);
-    }
-    table.rows.back().values.insert(table.rows.back().values.end(),
-                                    {base::Mean(first), base::Mean(second)});
   }
   return table;
 }
@@ -182,11 +332,8 @@ std::vector<Kept> MeasureKept(const std::vector<MixedAnswer>& answers,
   for (const MixedAnswer& answer : answers) {
     const std::vector<double>& single = differences.at(std::minmax(answer.own, answer.other));
     const ClassGeometry& captured = folds[static_cast<size_t>(answer.fold)];
-    Kept kept;
-    std::tie(kept.own, kept.own_features) = KeptOf(answer, Ingredient::kOwn, captured, single);
-    std::tie(kept.other, kept.other_features) =
-        KeptOf(answer, Ingredient::kOther, captured, single);
-    all.push_back(kept);
+    all.push_back(
+        {KeptOf(answer, true, captured, single), KeptOf(answer, false, captured, single)});
   }
   return all;
 }
@@ -280,34 +427,20 @@ std::vector<NamedStatistic> AvoidStatistics() {
 
 }  // namespace
 
-std::vector<report::Table> AvoidTables(const std::string& title,
-                                       const std::vector<std::string>& classes,
-                                       const std::vector<AvoidingAnswer>& answers) {
-  report::Table all = EstimateTable(title, {"own 1, other -1"});
-  report::Table by_class{absl::StrCat(title, ", by requested class")};
-  by_class.decimals = 3;
+report::Table AvoidTable(const std::string& title, const std::vector<AvoidingAnswer>& answers) {
+  report::Table table = EstimateTable(title, {"own 1, other -1"});
   std::vector<int> leaders;
-  std::map<int, std::vector<size_t>> rows;
-  for (size_t i = 0; i < answers.size(); ++i) {
-    leaders.push_back(answers[i].leader);
-    rows[answers[i].own].push_back(i);
-  }
-  for (const auto& [own, of_class] : rows) {
-    by_class.rows.push_back({classes[static_cast<size_t>(own)], {}});
-  }
+  for (const AvoidingAnswer& answer : answers) leaders.push_back(answer.leader);
   for (const NamedStatistic& named : AvoidStatistics()) {
-    const Statistic statistic = RatioOf(answers, named.figure, named.base);
-    AddEstimates(named.name, {Bootstrap(leaders, statistic)}, &all);
-    by_class.columns.emplace_back(named.name);
-    auto row = by_class.rows.begin();
-    for (const auto& [own, of_class] : rows) row++->values.push_back(statistic(of_class));
+    AddEstimates(named.name, {Bootstrap(leaders, RatioOf(answers, named.figure, named.base))},
+                 &table);
   }
-  all.notes = {
+  table.notes = {
       "Requested, avoided: the judge's probability of the own class and of the class at -1; "
       "recognised: share of answers whose likeliest class is the own one; of alone: as a ratio to "
       "the own class at 1 by itself. Distance moved: by how much the mean distance of the roots "
       "differs from that answer's, metres; farther: with its sign."};
-  return {std::move(all), std::move(by_class)};
+  return table;
 }
 
 }  // namespace duet::evaluation::experiments

@@ -6,17 +6,57 @@
 #include <utility>
 #include <vector>
 
-#include "model/evaluation/experiments/meeting_geometry.h"
+#include "model/body/limbs.h"
+#include "model/dataset/dataset.h"
 #include "model/evaluation/report/table.h"
 #include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
 
 // What mixing and avoiding classes does to the answers to a leader. All answers to one leader have
 // one seed and one start, so that only the labels differ.
 
 namespace duet::evaluation::experiments {
 
-// Which of a mix's two classes a figure is about.
-enum class Ingredient { kOwn, kOther };
+// How a follower meets a leader, in numbers: how near it comes, what its hands do, how it recoils.
+// Every feature is an extreme over the clip, and larger for more of it; therefore a mix can have
+// the features of two classes at different times.
+//
+// Threads: const methods are safe to call concurrently.
+class MeetingGeometry {
+ public:
+  // Requires a skeleton that Validate accepts.
+  explicit MeetingGeometry(const motion::Skeleton& skeleton);
+
+  // Whether the skeleton has hips, two arms, a chest and a head.
+  bool possible() const;
+  const body::Body& body() const { return body_; }
+
+  static const std::vector<std::string>& Features();
+
+  // Metres, and degrees for leaning. `away`: horizontal direction from leader to follower, of
+  // length 1. Requires possible(), at least one frame, and a leader of as many frames.
+  // Shapes: returns [features].
+  std::vector<double> Measure(const motion::Poses& leader, const motion::Poses& follower,
+                              motion::Vec3 away, double rate) const;
+
+ private:
+  motion::Skeleton skeleton_;
+  body::Body body_;
+};
+
+// The horizontal direction, of length 1, from leader to follower in a capture's first frame.
+motion::Vec3 AwayFromLeader(const dataset::Sequence& sequence, int root);
+
+// The features of captured followers, by class. Shapes: [classes][features].
+struct ClassGeometry {
+  std::vector<std::vector<double>> means, deviations;
+
+  // By how much the feature of a class exceeds that of another class, if this is more than their
+  // spread; otherwise 0. A feature that exceeds it belongs to the class's own geometry.
+  double Own(int of_class, int other, size_t feature) const;
+};
+ClassGeometry MeasureClasses(const MeetingGeometry& geometry, const dataset::Dataset& dataset,
+                             const std::vector<int>& sequences);
 
 // An answer to two classes at once, and the answers to each of them by itself.
 struct MixedAnswer {
@@ -44,7 +84,6 @@ double LargestMove(const motion::Poses& before, const motion::Poses& after);
 // their spread, and in single answers by a good part of that. NaN if there is none.
 struct Kept {
   double own = NAN, other = NAN;
-  int own_features = 0, other_features = 0;
 
   double weaker() const;
   double both() const;  // 1: both are above half
@@ -69,10 +108,8 @@ struct AvoidingAnswer {
   std::vector<float> alone, avoiding;  // the judge's probabilities [classes]
   double moved = 0;                    // change of the mean distance of the roots, metres
 };
-// The figures of all answers with their intervals, and those of each requested class.
-std::vector<report::Table> AvoidTables(const std::string& title,
-                                       const std::vector<std::string>& classes,
-                                       const std::vector<AvoidingAnswer>& answers);
+// The figures of all answers with their intervals.
+report::Table AvoidTable(const std::string& title, const std::vector<AvoidingAnswer>& answers);
 
 }  // namespace duet::evaluation::experiments
 

@@ -51,7 +51,6 @@ class Plausibility {
  private:
   motion::Skeleton skeleton_;
   body::Body body_;
-  body::Surface surface_;
 };
 
 // Combines the figures of pairs. Requires at least one pair. Shapes: as Plausibility::Figures.

@@ -7,12 +7,10 @@
 #include <map>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/statistics.h"
-#include "model/body/liveliness.h"
 #include "model/evaluation/experiments/estimate.h"
-#include "model/evaluation/experiments/meeting_geometry.h"
+#include "model/evaluation/experiments/mixes.h"
 #include "model/motion/filter.h"
 #include "model/motion/resample.h"
 
@@ -119,13 +117,6 @@ Reaction ReactionMeter::Measure(const dataset::Sequence& sequence, const Poses& 
   reaction.amplitude = AmplitudeOf(sequence, motion::Part(follower, padding, frames));
   reaction.correlation = Correlation(
       velocity(motion::WithoutNoise(sequence.pair.follower.poses, rate)), velocity(within));
-  reaction.before = reaction.after = NAN;
-  if (padding > 0) {
-    const double speed = body::JointSpeed(within, rate);
-    reaction.before = Ratio(body::JointSpeed(motion::Part(smooth, 0, padding), rate), speed);
-    reaction.after =
-        Ratio(body::JointSpeed(motion::Part(smooth, padding + frames, padding), rate), speed);
-  }
   return reaction;
 }
 
@@ -143,19 +134,6 @@ std::map<int, std::vector<size_t>> ByClass(const std::vector<ReactionPair>& pair
   std::map<int, std::vector<size_t>> by_class;
   for (const size_t row : rows) by_class[pairs[row].interaction_class].push_back(row);
   return by_class;
-}
-
-// The standard deviation within the classes.
-double SpreadWithin(const std::vector<ReactionPair>& pairs, const std::vector<size_t>& rows,
-                    const std::function<double(const ReactionPair&)>& value) {
-  std::vector<double> squares;
-  for (const auto& [c, of_class] : ByClass(pairs, rows)) {
-    std::vector<double> values;
-    for (const size_t row : of_class) values.push_back(value(pairs[row]));
-    const double mean = base::Mean(values);
-    for (const double v : values) squares.push_back(std::pow(v - mean, 2));
-  }
-  return std::sqrt(base::Mean(squares));
 }
 
 // The figures of all pairs as statistics, padded or not.
@@ -176,13 +154,9 @@ class Figures {
   std::vector<std::pair<std::string, Statistic>> All() const {
     return {{"amplitude, head", MeanRatio(Part::kHead)},
             {"amplitude, torso", MeanRatio(Part::kTorso)},
-            {"spread, head", SpreadRatio(Part::kHead)},
-            {"spread, torso", SpreadRatio(Part::kTorso)},
             {"head goes back", GoesBack(Part::kHead)},
             {"torso goes back", GoesBack(Part::kTorso)},
-            {"correlation", MeanOf(&Reaction::correlation)},
-            {"speed before", MeanOf(&Reaction::before)},
-            {"speed after", MeanOf(&Reaction::after)}};
+            {"correlation", MeanOf(&Reaction::correlation)}};
   }
 
  private:
@@ -200,12 +174,6 @@ class Figures {
     return [this, part](const std::vector<size_t>& rows) {
       return Ratio(Mean(rows, [&](auto& pair) { return Made(pair, part); }),
                    Mean(rows, [&](auto& pair) { return Of(pair.captured, part); }));
-    };
-  }
-  Statistic SpreadRatio(Part part) const {
-    return [this, part](const std::vector<size_t>& rows) {
-      return Ratio(SpreadWithin(pairs_, rows, [&](auto& pair) { return Made(pair, part); }),
-                   SpreadWithin(pairs_, rows, [&](auto& pair) { return Of(pair.captured, part); }));
     };
   }
   // The share of answers that go back by more than half of the captured mean of their class.
@@ -249,20 +217,16 @@ std::vector<report::Table> ReactionTables(const std::string& title,
   }
   all.notes = {
       "Amplitude: how far head and torso go away from the leader, from 0.3 s before to 1 s after "
-      "the leader reaches farthest, as a ratio of means to the captured followers; spread: the "
-      "ratio of the standard deviations within the classes. Goes back: share of answers that go "
+      "the leader reaches farthest, as a ratio of means to the captured followers. Goes "
+      "back: share of answers that go "
       "back by more than half of the captured mean of their class. Correlation: of the velocity "
       "away from the leader with the captured follower's, mean over the answers.",
       absl::StrCat("Padded: the leader holds the first pose for ", kPaddingSeconds,
-                   " s before the clip and the last pose as long after it. Speed before, after: of "
-                   "the joints in that time, over that within the clip.")};
+                   " s before the clip and the last pose as long after it.")};
   report::Table by_class{absl::StrCat(title, ", by class"), {"answers"}};
   by_class.decimals = 3;
   std::vector<Statistic> statistics;
   for (size_t i = 0; i < of_plain.size(); ++i) {
-    // A class of a few clips has no spread, and a clip without padding no speed before it.
-    if (absl::StrContains(of_plain[i].first, "spread")) continue;
-    if (absl::StrContains(of_plain[i].first, "speed")) continue;
     by_class.columns.push_back(of_plain[i].first);
     by_class.columns.push_back("padded");
     statistics.insert(statistics.end(), {of_plain[i].second, of_padded[i].second});

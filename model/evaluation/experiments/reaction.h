@@ -28,9 +28,6 @@ struct Amplitude {
 struct Reaction {
   Amplitude amplitude;
   double correlation = 0;  // of the velocity away from the leader with the captured follower's
-  // Speed of the joints in the seconds before and after the clip over that within it; NaN without
-  // padding.
-  double before = 0, after = 0;
 };
 
 // Captured and synthesised reactions to one leader's clip.

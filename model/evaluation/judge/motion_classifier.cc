@@ -107,8 +107,7 @@ std::vector<dataset::Sequence> WithFollowers(const dataset::Dataset& dataset,
 }
 
 MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
-                            const std::vector<dataset::Sequence>& sequences,
-                            Sees sees) {
+                            const std::vector<dataset::Sequence>& sequences, Sees sees) {
   std::vector<motion::Poses> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {

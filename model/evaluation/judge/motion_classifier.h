@@ -35,12 +35,12 @@ struct MotionClassifierOptions {
 // class. A judge is such a classifier that scores synthesised motion (accuracy, FID, diversity);
 // the paper's Table 6 trains others on synthetic motion.
 //
-// It sees, in the standard coordinates of the leader (its root at the origin, -z in the direction of
-// the partner, else of its hips), each joint of the follower relative to the leader's root (metres)
-// and to the follower's own root, and its velocity in the world (m/s); with Sees::kBoth also each
-// joint of the leader relative to its root, and its velocity. All of it follows from the first part,
-// but a network does not learn that from a hundred clips: with it, a judge of unseen people has an
-// eighth fewer errors.
+// It sees, in the standard coordinates of the leader (its root at the origin, -z in the direction
+// of the partner, else of its hips), each joint of the follower relative to the leader's root
+// (metres) and to the follower's own root, and its velocity in the world (m/s); with Sees::kBoth
+// also each joint of the leader relative to its root, and its velocity. All of it follows from the
+// first part, but a network does not learn that from a hundred clips: with it, a judge of unseen
+// people has an eighth fewer errors.
 //
 // Source:  paper sections 3.3 and 4 (the paper does not describe its own extractor).
 // Threads: the const functions are safe to call concurrently.

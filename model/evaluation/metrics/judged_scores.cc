@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -66,31 +65,6 @@ Gaussian Fit(const FeatureSet& features) {
   return {mean, std::move(rows)};
 }
 
-// The classes of the nearest other samples, the nearest first.
-std::vector<int> NearestClasses(const FeatureSet& features, const std::vector<int>& classes,
-                                size_t sample, int neighbours) {
-  std::vector<std::pair<double, size_t>> others;
-  for (size_t i = 0; i < features.size(); ++i) {
-    if (i != sample) others.emplace_back(SquaredDistance(features[sample], features[i]), i);
-  }
-  std::partial_sort(others.begin(), others.begin() + neighbours, others.end());
-  std::vector<int> nearest;
-  for (int i = 0; i < neighbours; ++i) {
-    nearest.push_back(classes[others[static_cast<size_t>(i)].second]);
-  }
-  return nearest;
-}
-
-int Vote(const std::vector<int>& nearest) {
-  std::map<int, int> votes;
-  for (const int one : nearest) ++votes[one];
-  int winner = nearest.front();
-  for (const int one : nearest) {  // in this order: among equals the nearest wins
-    if (votes[one] > votes[winner]) winner = one;
-  }
-  return winner;
-}
-
 // Fewer motions have neither a covariance nor a pair.
 constexpr size_t kLeastMotions = 2;
 
@@ -139,14 +113,21 @@ double Diversity(const FeatureSet& features) {
 }
 
 absl::StatusOr<double> NeighbourAccuracy(const FeatureSet& features,
-                                         const std::vector<int>& classes, int neighbours) {
-  if (features.size() < static_cast<size_t>(neighbours) + 1) {
-    return absl::InvalidArgumentError(absl::StrCat("features: expected at least ", neighbours + 1,
-                                                   " vectors, got ", features.size()));
+                                         const std::vector<int>& classes) {
+  if (features.size() < 2) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("features: expected at least 2 vectors, got ", features.size()));
   }
   double right = 0;
   for (size_t i = 0; i < features.size(); ++i) {
-    if (Vote(NearestClasses(features, classes, i, neighbours)) == classes[i]) ++right;
+    size_t nearest = i == 0 ? 1 : 0;
+    for (size_t other = 0; other < features.size(); ++other) {
+      if (other != i && SquaredDistance(features[i], features[other]) <
+                            SquaredDistance(features[i], features[nearest])) {
+        nearest = other;
+      }
+    }
+    if (classes[nearest] == classes[i]) ++right;
   }
   return right / static_cast<double>(features.size());
 }

@@ -25,13 +25,11 @@ absl::StatusOr<double> FrechetDistance(const FeatureSet& a, const FeatureSet& b)
 // The mean Euclidean distance over all pairs of different samples. 0 for fewer than 2.
 double Diversity(const FeatureSet& features);
 
-// The share of samples whose class is the most frequent one among their `neighbours` nearest other
-// samples (Euclidean): how well the classes are separated in the space itself. Among equally
-// frequent classes, the one with the nearest sample wins.
-// Shapes: features [samples][features], classes [samples].
-// Errors: INVALID_ARGUMENT for fewer than `neighbours` + 1 samples. Requires `neighbours` >= 1.
+// The share of samples whose nearest other sample (Euclidean) is of their class: how well the
+// classes are separated in the space itself. Shapes: features [samples][features], classes
+// [samples]. Errors: INVALID_ARGUMENT for fewer than 2 samples.
 absl::StatusOr<double> NeighbourAccuracy(const FeatureSet& features,
-                                         const std::vector<int>& classes, int neighbours);
+                                         const std::vector<int>& classes);
 
 // Counts how often motions of one class were classified as another.
 class Confusion {

@@ -10,7 +10,6 @@
 #include "model/evaluation/judge/motion_classifier.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/metric_tables.h"
 
 namespace duet::evaluation::program {
@@ -58,7 +57,7 @@ absl::StatusOr<experiments::DataHalf> PrepareHalf(const dataset::Dataset& datase
 
 report::ResultSection MakeSection(const dataset::Dataset& dataset,
                                   const AugmentationArguments& arguments,
-                                  const experiments::Trials& trials) {
+                                  const std::vector<experiments::AccuracyRow>& rows) {
   report::ResultSection section = BeginSection(
       arguments.section,
       "A classifier with the architecture of the discriminator learns to classify the follower's "
@@ -70,11 +69,8 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
       "Rows take equally many training steps, since longer training alone moves the accuracy; "
       "\"longer\" rows take the steps that the larger set needs for as many epochs. \"Synthetic "
       "alone\" never sees a captured follower.");
-  report::Table means = trials.Means("Accuracy on captured followers, mean over the trials");
-  AddPrintedRows(report::PaperAugmentation(), &means);
-  section.tables = {
-      std::move(means), trials.Deviations("Accuracy, standard deviation over the trials"),
-      trials.Gains("Gain over captured followers alone, paired", experiments::kCapturedRow)};
+  section.tables = AccuracyTables(dataset.classes, rows);
+  AddPrintedRows(report::PaperAugmentation(), &section.tables.front());
   section.settings = {{"data", dataset.name},
                       {"halves (seeds)", absl::StrJoin(arguments.seeds, ", ")},
                       {"classifiers a half", absl::StrCat(arguments.repeats)},
@@ -91,16 +87,14 @@ absl::Status RunAugmentation(const AugmentationArguments& arguments) {
   for (const uint64_t seed : arguments.seeds) {
     DUET_TRY(halves.emplace_back(), PrepareHalf(dataset, arguments, seed));
   }
-  std::vector<std::string> columns = dataset.classes;
-  columns.push_back("mean");
-  experiments::Trials trials(std::move(columns));
+  std::vector<experiments::AccuracyRow> rows;
   const experiments::HalfOptions options = {
       absl::StrCat("captured + ", arguments.plan.match, " match + ", arguments.plan.mix, " mix"),
       arguments.epochs, arguments.repeats};
   for (const experiments::DataHalf& half : halves) {
-    DUET_RETURN_IF_ERROR(RunHalf(dataset, half, options, &std::cerr, &trials));
+    DUET_RETURN_IF_ERROR(RunHalf(dataset, half, options, &std::cerr, &rows));
   }
-  return FinishSection(arguments.section, MakeSection(dataset, arguments, trials));
+  return FinishSection(arguments.section, MakeSection(dataset, arguments, rows));
 }
 
 }  // namespace

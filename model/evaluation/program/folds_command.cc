@@ -1,19 +1,16 @@
 #include <algorithm>
-#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_format.h"
+#include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
 #include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/flags.h"
 #include "model/evaluation/program/fold_scorer.h"
-#include "model/evaluation/protocol/protocol.h"
 #include "model/evaluation/report/metric_tables.h"
 
 namespace duet::evaluation::program {
@@ -28,36 +25,41 @@ struct FoldsArguments : ExperimentFlags {
   std::vector<std::string> printed;
 };
 
-// A method for the fold without a subject.
-using MakeMethod =
-    std::function<absl::StatusOr<std::unique_ptr<protocol::Method>>(const std::string& subject)>;
-
-// Scores a method that answers once; all its figures are of those answers.
-absl::StatusOr<report::MethodFigures> ScoreMethod(const dataset::Dataset& dataset,
-                                                  const FoldScorer& scorer, const std::string& row,
-                                                  const MakeMethod& make) {
-  std::vector<std::vector<metrics::ScoredMotion>> answers;
+// Scores one answer to each leader of every fold. `answer` returns those of a fold.
+template <typename Answer>
+absl::StatusOr<report::MethodFigures> Score(const FoldScorer& scorer, const std::string& row,
+                                            const Answer& answer) {
+  OneAnswerEach answers;
   for (const Fold& fold : scorer.folds()) {
-    DUET_TRY(std::unique_ptr<protocol::Method> method, make(fold.subject));
-    DUET_TRY(protocol::FoldResult result, RunFold(dataset, fold.split, method.get()));
-    std::cerr << absl::StrFormat(
-        "%s without %s: trained in %.1f s, answered %d leaders in %.1f s\n", row, fold.subject,
-        result.train_seconds, result.motions.size(), result.predict_seconds);
-    answers.push_back(std::move(result.motions));
+    DUET_TRY(answers.emplace_back(), answer(fold));
+    std::cerr << absl::StrCat(row, " without ", fold.subject, ": ", answers.back().size(),
+                              " leaders\n");
   }
   return scorer.Score(row, answers);
 }
 
+using Motions = absl::StatusOr<std::vector<metrics::ScoredMotion>>;
+
+absl::StatusOr<report::MethodFigures> ScoreBaseline(const dataset::Dataset& dataset,
+                                                    const FoldScorer& scorer,
+                                                    const std::string& name) {
+  return Score(scorer, name, [&](const Fold& fold) -> Motions {
+    DUET_TRY(const std::unique_ptr<baselines::Method> method, baselines::MakeBaseline(name));
+    return RunFold(dataset, fold.split, method.get());
+  });
+}
+
 absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset,
                                                  const FoldScorer& scorer, const FoldModel& model,
-                                                 experiments::StartGiven start) {
-  const std::string row = model.name + StartSuffix(start);
-  return ScoreMethod(
-      dataset, scorer, row,
-      [&](const std::string& subject) -> absl::StatusOr<std::unique_ptr<protocol::Method>> {
-        DUET_TRY(SharedSynthesizer synthesizer, model.load(subject));
-        return std::make_unique<experiments::SynthesizerMethod>(row, synthesizer, start);
-      });
+                                                 const std::string& start) {
+  experiments::AskedSamples once;
+  once.samples = 1;
+  return Score(scorer, model.name + StartSuffix(ParseStart(start)),
+               [&](const Fold& fold) -> Motions {
+                 DUET_TRY(metrics::SampledMotions answers,
+                          Answers(dataset, model, fold, fold.split.test, start, once));
+                 return std::move(answers.front());
+               });
 }
 
 absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experiment,
@@ -66,16 +68,14 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experi
   std::vector<report::MethodFigures> rows;
   for (const std::string& name : arguments.baselines) {
     if (name == kNoBaseline) continue;
-    const auto make = [&name](const std::string&) { return baselines::MakeBaseline(name); };
-    DUET_TRY(rows.emplace_back(), ScoreMethod(experiment.dataset, scorer, name, make));
+    DUET_TRY(rows.emplace_back(), ScoreBaseline(experiment.dataset, scorer, name));
   }
   for (const FoldModel& model : experiment.models) {
     for (const std::string& name : arguments.starts) {
-      const experiments::StartGiven start = ParseStart(name);
-      auto row = ScoreModel(experiment.dataset, scorer, model, start);
+      auto row = ScoreModel(experiment.dataset, scorer, model, name);
       // A model without a start input has only one row.
-      if (absl::IsFailedPrecondition(row.status()) && start != experiments::StartGiven::kNone) {
-        std::cerr << model.name << StartSuffix(start) << ": left out: " << row.status().message()
+      if (absl::IsFailedPrecondition(row.status()) && name != StartNames().front()) {
+        std::cerr << model.name << " with " << name << ": left out: " << row.status().message()
                   << "\n";
         continue;
       }

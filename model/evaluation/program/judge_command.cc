@@ -9,7 +9,7 @@
 #include "model/evaluation/judge/motion_classifier.h"
 #include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/flags.h"
+#include "model/evaluation/program/experiment.h"
 
 namespace duet::evaluation::program {
 namespace {

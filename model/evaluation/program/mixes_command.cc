@@ -11,12 +11,10 @@
 #include "model/base/status_macros.h"
 #include "model/body/grade.h"
 #include "model/body/posture.h"
-#include "model/evaluation/experiments/meeting_geometry.h"
 #include "model/evaluation/experiments/mixes.h"
 #include "model/evaluation/experiments/reaction.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/flags.h"
 #include "model/evaluation/program/fold_scorer.h"
 
 namespace duet::evaluation::program {
@@ -309,7 +307,7 @@ absl::StatusOr<std::vector<report::Table>> TablesOf(const Experiment& experiment
     add(MixTables(row + ": mixes", dataset.classes, meters.classes, measured.mixes));
   }
   if (arguments.Measures(kNegatives)) {
-    add(AvoidTables(row + ": negatives", dataset.classes, measured.avoiding));
+    tables.push_back(AvoidTable(row + ": negatives", measured.avoiding));
   }
   if (arguments.Measures(kReaction)) {
     add(ReactionTables(row + ": reaction", dataset.classes, measured.reactions));

@@ -1,12 +1,16 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "model/authoring/made_leaders.h"
 #include "model/base/split_mix.h"
 #include "model/base/statistics.h"
@@ -19,7 +23,6 @@
 #include "model/evaluation/experiments/plausibility.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/resample.h"
@@ -142,6 +145,51 @@ report::Table FiguresTable(const std::string& title, const std::vector<std::stri
   return table;
 }
 
+const char* SideOf(absl::string_view joint_name) {
+  if (absl::StrContains(joint_name, "left")) return "left";
+  return absl::StrContains(joint_name, "right") ? "right" : "middle";
+}
+
+nlohmann::ordered_json BonesToJson(const motion::Skeleton& skeleton) {
+  nlohmann::ordered_json bones = nlohmann::ordered_json::array();
+  for (const motion::Bone& bone : skeleton.bones) {
+    bones.push_back({{"parent", bone.parent},
+                     {"child", bone.child},
+                     {"side", SideOf(skeleton.joint_names[static_cast<size_t>(bone.child)])}});
+  }
+  return bones;
+}
+
+// Shape: [frames][joints][3].
+nlohmann::ordered_json PosesToJson(const motion::Poses& poses) {
+  const auto rounded = [](double metres) { return std::round(metres * 1e4) / 1e4; };
+  nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    nlohmann::ordered_json joints = nlohmann::ordered_json::array();
+    for (const motion::Vec3& p : poses[t]) {
+      joints.push_back({rounded(p.x), rounded(p.y), rounded(p.z)});
+    }
+    frames.push_back(std::move(joints));
+  }
+  return frames;
+}
+
+// The data of a figure: a strip of moments of two stick figures, and an animation. Positions are in
+// metres, rounded to 0.1 mm.
+nlohmann::ordered_json PosePlot(const std::string& title, const engine::ModelDescription& model,
+                                const Poses& leader, const Poses& follower) {
+  const int head = model.skeleton.Find("head");
+  nlohmann::ordered_json pair = {
+      {"name", model.name}, {"leader", PosesToJson(leader)}, {"follower", PosesToJson(follower)}};
+  return {{"kind", "poses"},
+          {"title", title},
+          {"frame_rate_hz", model.frame_rate_hz},
+          {"root", model.skeleton.root},
+          {"head", head < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(head)},
+          {"bones", BonesToJson(model.skeleton)},
+          {"pairs", nlohmann::ordered_json::array({std::move(pair)})}};
+}
+
 // Pictures of the worst seconds of the worst answers.
 void AddPictures(const engine::ModelDescription& model, const std::vector<Answer>& answers,
                  int count, report::ResultSection* section) {
@@ -164,11 +212,8 @@ void AddPictures(const engine::ModelDescription& model, const std::vector<Answer
     section->figures.push_back(
         {absl::StrCat(section->id, "_worst_", section->figures.size() + 1),
          absl::StrCat(caption, ": leader blue, follower orange; paler on the left of the body."),
-         report::PosePlot{caption,
-                          model.skeleton,
-                          {{model.name, motion::Part(leader.poses, first, frames),
-                            motion::Part(answer.follower, first, frames)}},
-                          leader.frame_rate_hz}});
+         PosePlot(caption, model, motion::Part(leader.poses, first, frames),
+                  motion::Part(answer.follower, first, frames))});
   }
 }
 

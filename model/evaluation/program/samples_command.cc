@@ -5,10 +5,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
-#include "model/evaluation/baselines/other_people.h"
+#include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/flags.h"
 #include "model/evaluation/program/fold_scorer.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/result_section.h"
@@ -85,8 +84,6 @@ absl::Status RunSamples(const ExperimentFlags& flags) {
                                 flags.asked.tell_direction ? "in the request" : "from the leader");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
   section.tables = {report::SampleSummary(rows)};
-  report::Table spread = report::SampleSpread(rows);
-  if (!spread.rows.empty()) section.tables.push_back(std::move(spread));
   for (report::Table& table : report::SampleTables(experiment.dataset.classes, rows)) {
     section.tables.push_back(std::move(table));
   }

@@ -10,7 +10,6 @@
 #include "model/evaluation/experiments/label_sweep.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/flags.h"
 #include "model/evaluation/program/fold_scorer.h"
 
 namespace duet::evaluation::program {
@@ -37,9 +36,9 @@ absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold,
   std::vector<experiments::LabelledLeader> leaders;
   for (int raised = 0; raised < classes; ++raised) {
     for (const double weight : experiments::SweepWeights()) {
-      leaders.push_back({&sequence,
-                         engine::LabelTrack(experiments::SweepLabels(classes, own, raised, weight)),
-                         sampling});
+      std::vector<float> labels = experiments::OneClass(classes, own);
+      labels[static_cast<size_t>(raised)] = static_cast<float>(weight);
+      leaders.push_back({&sequence, engine::LabelTrack(labels), sampling});
     }
   }
   DUET_TRY(std::vector<motion::Poses> followers, SynthesizeSequences(*fold.model, leaders, start));
@@ -137,7 +136,7 @@ void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
   AddOption("--sample-seeds", &arguments->sample_seeds,
             "seeds of a model that samples; each leader is swept with every seed", command)
       ->delimiter(',');
-  AddVarietyFlag(&arguments->asked.variety, command);
+  AddNumber("--variety", &arguments->asked.variety, 0.0, 2.0, kVarietyHelp, command);
 }
 
 }  // namespace duet::evaluation::program

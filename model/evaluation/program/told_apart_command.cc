@@ -10,7 +10,6 @@
 #include "model/evaluation/experiments/told_apart.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {

@@ -93,36 +93,6 @@ std::vector<MethodFigures> WithRatios(std::vector<MethodFigures> methods) {
   return methods;
 }
 
-Groups<MethodFigures> ByName(const std::vector<MethodFigures>& rows) {
-  return GroupBy(rows, [](const MethodFigures& row) { return row.name; });
-}
-
-MethodFigures MeanOfRows(const std::vector<MethodFigures>& rows) {
-  MethodFigures mean = rows.front();
-  for (auto& [name, values] : mean.by_metric) {
-    for (size_t c = 0; c < values.size(); ++c) {
-      std::vector<double> of_rows;
-      for (const MethodFigures& row : rows) of_rows.push_back(row.by_metric.at(name)[c]);
-      values[c] = base::Mean(of_rows);
-    }
-  }
-  return mean;
-}
-
-Table EmptySummary(const std::string& title) {
-  Table table{title};
-  table.decimals = 3;
-  for (const Column& column : kSummary) table.columns.push_back(column.heading);
-  return table;
-}
-
-// One row per name: rows with the same name (a model trained with several seeds) become their mean.
-std::vector<MethodFigures> MeanByName(const std::vector<MethodFigures>& rows) {
-  std::vector<MethodFigures> means;
-  for (const auto& [name, group] : ByName(rows)) means.push_back(MeanOfRows(group));
-  return means;
-}
-
 const std::vector<std::string>& SbuClasses() {
   static const auto& classes = *new std::vector<std::string>{
       "kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
@@ -197,8 +167,10 @@ void AddPrintedRows(const Table& paper, Table* table) {
 }
 
 Table SampleSummary(const std::vector<MethodFigures>& methods) {
-  Table table = EmptySummary("All figures, means over the classes");
-  for (const MethodFigures& method : MeanByName(WithRatios(methods))) {
+  Table table{"All figures, means over the classes"};
+  table.decimals = 3;
+  for (const Column& column : kSummary) table.columns.push_back(column.heading);
+  for (const MethodFigures& method : WithRatios(methods)) {
     TableRow row = {method.name, {}};
     for (const Column& column : kSummary) row.values.push_back(Figure(method, column.figure));
     table.rows.push_back(std::move(row));
@@ -212,24 +184,9 @@ Table SampleSummary(const std::vector<MethodFigures>& methods) {
   return table;
 }
 
-Table SampleSpread(const std::vector<MethodFigures>& methods) {
-  Table table = EmptySummary("Spread over training seeds, standard deviation");
-  for (const auto& [name, group] : ByName(WithRatios(methods))) {
-    if (group.size() < 2) continue;
-    TableRow row = {name, {}};
-    for (const Column& column : kSummary) {
-      std::vector<double> values;
-      for (const MethodFigures& method : group) values.push_back(Figure(method, column.figure));
-      row.values.push_back(base::Summarise(values).deviation);
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
 std::vector<Table> SampleTables(const std::vector<std::string>& classes,
                                 const std::vector<MethodFigures>& methods) {
-  const std::vector<MethodFigures> rows = MeanByName(WithRatios(methods));
+  const std::vector<MethodFigures> rows = WithRatios(methods);
   std::vector<Table> tables;
   for (const MetricStyle& style : SampleStyles()) {
     tables.push_back(MetricTable(style, classes, rows));

@@ -57,10 +57,6 @@ inline constexpr char kFilteredFrechet[] = "fid_pooled_filtered";
 // to the row of captured followers, of class means. Requires that row.
 Table SampleSummary(const std::vector<MethodFigures>& methods);
 
-// The standard deviations (n - 1) of the summary's figures over the rows of each name that occurs
-// more than once.
-Table SampleSpread(const std::vector<MethodFigures>& methods);
-
 // By class: the ratios and every figure of MetricStyles and of the above.
 std::vector<Table> SampleTables(const std::vector<std::string>& classes,
                                 const std::vector<MethodFigures>& methods);

@@ -1,60 +1,25 @@
 #ifndef DUET_MODEL_EVALUATION_REPORT_RESULT_SECTION_H_
 #define DUET_MODEL_EVALUATION_REPORT_RESULT_SECTION_H_
 
-#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
-#include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/report/table.h"
-#include "model/motion/clip.h"
-#include "model/motion/skeleton.h"
 
 // The data of figures. scripts/make_report.py draws them.
 
 namespace duet::evaluation::report {
 
-// A map of a feature space by t-SNE, one point per sample. Shapes: features and classes [samples].
-struct LatentPlot {
-  std::string title;
-  std::vector<std::string> class_names;
-  std::vector<int> classes;
-  metrics::FeatureSet features;
-  double perplexity = 30;  // effective number of neighbours; lowered for few samples
-  uint64_t seed = 1;       // of the map's start
-};
-
-// Two people under one name. Shapes: the same number of frames in both, at least 1, and in every
-// pair of a plot.
-struct PicturedPair {
-  std::string name;
-  motion::Poses leader;
-  motion::Poses follower;
-};
-
-// Leader and follower as stick figures: a strip of moments, and an animation.
-struct PosePlot {
-  std::string title;
-  motion::Skeleton skeleton;
-  std::vector<PicturedPair> pairs;
-  double frame_rate_hz = 0;
-};
-
-using Plot = std::variant<LatentPlot, PosePlot>;
-
-// The field "kind" names the alternative: "latent" or "poses". Values that are not finite
-// are null. Positions are in metres, rounded to 0.1 mm.
-nlohmann::ordered_json ToJson(const Plot& plot);
-
 struct ResultFigure {
   std::string name;     // of its files, lower_snake_case, unique within the report
   std::string caption;  // one or two sentences
-  Plot plot;
+  // Values that are not finite are null. The field "kind" is "latent" (latent_command.cc) or
+  // "poses" (plausible_command.cc).
+  nlohmann::ordered_json plot;
 };
 
 // The results of one duet-eval command, as the report prints them.

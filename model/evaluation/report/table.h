@@ -1,9 +1,7 @@
 #ifndef DUET_MODEL_EVALUATION_REPORT_TABLE_H_
 #define DUET_MODEL_EVALUATION_REPORT_TABLE_H_
 
-#include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace duet::evaluation::report {
@@ -31,22 +29,6 @@ struct Table {
 
 // The mean of each column, ignoring NaN. Shapes: rows [rows][columns]; returns [columns].
 std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows);
-
-// Rows of one name, in order of first appearance.
-template <typename Row>
-using Groups = std::vector<std::pair<std::string, std::vector<Row>>>;
-template <typename Row, typename NameOf>
-Groups<Row> GroupBy(const std::vector<Row>& rows, const NameOf& name_of) {
-  Groups<Row> groups;
-  for (const Row& row : rows) {
-    const std::string name = name_of(row);
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const auto& other) { return other.first == name; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {name, {}});
-    group->second.push_back(row);
-  }
-  return groups;
-}
 
 // Adds a last column "mean" with each row's mean; NaN where a figure is missing.
 void AddMeanColumn(Table* table);

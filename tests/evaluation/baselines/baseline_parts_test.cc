@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
-#include "model/evaluation/baselines/chain.h"
-#include "model/evaluation/baselines/motion_matrix.h"
+#include "model/evaluation/baselines/class_models.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
 
@@ -52,68 +50,6 @@ TEST(ChainTest, AgreesWithEnumeration) {
   EXPECT_LT((steps - all.steps).norm(), 1e-12);
 }
 
-TEST(ChainTest, DoesNotUnderflow) {
-  ChainWeights chain;
-  chain.start = Eigen::RowVector2d(0.5, 0.5);
-  chain.step = Eigen::Matrix2d::Constant(0.5);
-  const Rows log_arrivals = Rows::Constant(500, 2, -1e4);
-  EXPECT_NEAR(SumOverPaths(chain, log_arrivals).log_sum, -5e6, 1e-3);
-}
-
-// Sequences that stay in state 0 (outputs near (0, 5)), then in state 1 (near (10, -5)).
-std::vector<Rows> TwoStateSequences() {
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal(0, 0.3);
-  std::vector<Rows> sequences;
-  for (int i = 0; i < 12; ++i) {
-    Rows one(20, 2);
-    for (Eigen::Index t = 0; t < 20; ++t) {
-      const bool late = t >= 5 + i % 9;
-      const double shared = normal(random);
-      one.row(t) << (late ? 10 : 0) + shared, (late ? -5 : 5) + 2 * shared;
-    }
-    sequences.push_back(one);
-  }
-  return sequences;
-}
-
-TEST(GaussianHmmTest, FindsStatesAndTheDependenceBetweenOutputs) {
-  GaussianHmmOptions options;
-  options.states = 2;
-  options.prior_weight = 0.01;
-  const std::vector<Rows> sequences = TwoStateSequences();
-  const GaussianHmm hmm(sequences, options);
-  // Given the first output alone: the state, and the second one by its slope of 2 within the state.
-  Rows known(4, 1);
-  known << 0, 0.2, 10.1, 9.9;
-  EXPECT_GT(hmm.Posterior(known)(1, 0), 0.99);
-  EXPECT_GT(hmm.Posterior(known)(2, 1), 0.99);
-  const Rows rest = hmm.ExpectRest(known);
-  EXPECT_NEAR(rest(0, 0), 5, 0.2);
-  EXPECT_NEAR(rest(1, 0), 5.4, 0.2);
-  EXPECT_NEAR(rest(2, 0), -4.8, 0.2);
-  EXPECT_NEAR(rest(3, 0), -5.2, 0.2);
-}
-
-TEST(GaussianHmmTest, MaximisationRaisesTheLikelihood) {
-  const std::vector<Rows> sequences = TwoStateSequences();
-  GaussianHmmOptions options;
-  options.states = 2;
-  options.prior_weight = 0.01;
-  std::vector<double> totals;
-  for (const int iterations : {0, 1, 2, 10}) {
-    options.iterations = iterations;
-    const GaussianHmm hmm(sequences, options);
-    double total = 0;
-    for (const Rows& sequence : sequences) total += hmm.LogLikelihood(sequence);
-    totals.push_back(total);
-  }
-  EXPECT_GT(totals[1], totals[0] + 1);
-  EXPECT_GT(totals[2], totals[1]);
-  // Converged, up to what the prior takes.
-  EXPECT_GT(totals[3], totals[2] - 0.01);
-}
-
 TEST(KMeansTest, FindsSeparateClusters) {
   Rows rows(6, 2);
   rows << 0, 0, 0, 1, 10, 10, 10, 11, -9, 5, -9, 6;
@@ -127,12 +63,6 @@ TEST(KMeansTest, FindsSeparateClusters) {
   EXPECT_NE(nearest[0], nearest[2]);
 }
 
-TEST(KMeansTest, HasNoMoreCentresThanDifferentRows) {
-  Rows rows(4, 1);
-  rows << 1, 1, 2, 2;
-  EXPECT_EQ(KMeans(rows, 10, 1).rows(), 2);
-}
-
 TEST(PoseSpaceTest, KeepsWhatTheComponentsSpan) {
   // Rows in a plane of three dimensions.
   Rows rows(5, 3);
@@ -143,15 +73,6 @@ TEST(PoseSpaceTest, KeepsWhatTheComponentsSpan) {
   const PoseSpace line(rows, 1);
   EXPECT_EQ(line.dimensions(), 1);
   EXPECT_GT((line.Reconstruct(line.Project(rows)) - rows).norm(), 0.1);
-}
-
-TEST(SquaredDistancesTest, HasARowForEachRowOfTheFirst) {
-  Rows a(2, 2), b(3, 2);
-  a << 0, 0, 1, 2;
-  b << 0, 0, 3, 4, 1, 2;
-  Rows squared(2, 3);
-  squared << 0, 25, 5, 5, 8, 0;
-  EXPECT_LT((SquaredDistances(a, b) - squared).norm(), 1e-12);
 }
 
 TEST(TimeWarpedDistanceTest, ForgivesTempo) {
@@ -197,19 +118,6 @@ TEST(MotionMatrixTest, StandardisationIsInvertible) {
       EXPECT_LT(Distance(world.at(t, j), sequence.pair.follower.at(t, j)), 1e-5);
     }
   }
-}
-
-TEST(MotionMatrixTest, AKnownPartnerDirectionTurnsTheFrame) {
-  const dataset::Dataset dataset = MadeUpPairs(1);
-  dataset::Sequence sequence = dataset.sequences[0];
-  const motion::Vec3 across = sequence.pair.follower.at(0, dataset.skeleton.root) -
-                              sequence.pair.leader.at(0, dataset.skeleton.root);
-  sequence.partner_direction = RotateY(across, 0.5);
-  const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
-  const Eigen::Index root = 3 * dataset.skeleton.root;
-  // Half a radian beside -z now.
-  EXPECT_NEAR(std::abs(pair.follower(0, root)), 1.2 * std::sin(0.5), 1e-4);
-  EXPECT_NEAR(pair.follower(0, root + 2), -1.2 * std::cos(0.5), 1e-4);
 }
 
 TEST(MotionMatrixTest, CuesContainTheLeadersPath) {

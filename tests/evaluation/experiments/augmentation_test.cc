@@ -108,57 +108,49 @@ TEST(SynthesizeJobsTest, AnswersEveryJobAndRefusesAModelOfOtherClasses) {
 }
 
 // Two classes that any classifier tells apart: give steps back, flinch steps back four times as
-// far.
-TEST(ClassifierAccuracyTest, LearnsFromSyntheticMotionAlone) {
+// far. Each synthetic motion is labelled as the other class: what is learnt is what is taught.
+TEST(RunHalfTest, TrainsEveryRowOnItsMaterial) {
   const dataset::Dataset dataset = MadeUpPairs(8);
-  const dataset::Split split = *SplitInHalves(dataset, 1);
-  judge::MotionClassifierOptions options;
-  options.hidden = 8;
-  options.epochs = 60;
-  TrainingMaterial material;
-  for (const int index : split.train) {
-    material.synthetic.push_back(dataset.sequences[static_cast<size_t>(index)]);
-  }
-  const absl::StatusOr<std::vector<double>> right =
-      ClassifierAccuracy(dataset, material, split.test, options);
-  ASSERT_THAT(right, IsOk());
-  ASSERT_EQ(right->size(), 3u);
-  EXPECT_GE(right->back(), 0.9);
-  // Each labelled as the other: what is learnt is what is taught.
-  for (dataset::Sequence& sequence : material.synthetic) {
-    sequence.interaction_class = 1 - sequence.interaction_class;
-  }
-  const absl::StatusOr<std::vector<double>> wrong =
-      ClassifierAccuracy(dataset, material, split.test, options);
-  ASSERT_THAT(wrong, IsOk());
-  EXPECT_LE(wrong->back(), 0.1);
-}
-
-TEST(RunHalfTest, TrainsEveryRow) {
-  const dataset::Dataset dataset = MadeUpPairs(4);
-  std::vector<DataHalf> halves(2);
-  for (uint64_t seed : {1, 2}) {
-    DataHalf& half = halves[seed - 1];
+  std::vector<AccuracyRow> rows;
+  std::ostringstream progress;
+  for (const uint64_t seed : {1, 2}) {
+    DataHalf half;
     half.seed = seed;
     half.split = *SplitInHalves(dataset, seed);
-    half.synthetic = dataset.sequences;
+    for (const int index : half.split.train) {
+      half.synthetic.push_back(dataset.sequences[static_cast<size_t>(index)]);
+      half.synthetic.back().interaction_class = 1 - half.synthetic.back().interaction_class;
+    }
+    ASSERT_THAT(RunHalf(dataset, half, {"with synthetic", 40, 1}, &progress, &rows), IsOk());
   }
-  Trials trials({"give", "flinch", "all"});
-  std::ostringstream progress;
-  for (const DataHalf& half : halves) {
-    ASSERT_THAT(RunHalf(dataset, half, {"with synthetic", 1, 2}, &progress, &trials), IsOk());
+  std::vector<std::string> names;
+  for (const AccuracyRow& row : rows) {
+    names.push_back(row.name);
+    ASSERT_THAT(row.trials, SizeIs(2));
+    ASSERT_THAT(row.trials.front(), SizeIs(3));
   }
-  std::vector<std::string> rows;
-  for (const report::TableRow& row : trials.Means("means").rows) {
-    rows.push_back(row.name);
-    EXPECT_GE(row.values.back(), 0);
-    EXPECT_LE(row.values.back(), 1);
-  }
-  EXPECT_THAT(rows, testing::ElementsAre("captured", "with synthetic", "captured, longer",
-                                         "with synthetic, longer", "synthetic alone"));
-  // 5 rows for each half, two classifiers each.
+  EXPECT_THAT(names, ElementsAre("captured", "with synthetic", "captured, longer",
+                                 "with synthetic, longer", "synthetic alone"));
+  EXPECT_GE(rows.front().trials.front().back(), 0.9);
+  EXPECT_LE(rows.back().trials.front().back(), 0.1);
   const std::string lines = progress.str();
-  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 20);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 10);
+}
+
+TEST(AccuracyTablesTest, HaveMeansDeviationsAndPairedGains) {
+  const auto tables = AccuracyTables({"kick"}, {{"captured", {{0.5, 0.6}, {0.7, 0.8}, {0.9, 1.0}}},
+                                                {"more", {{0.6, 0.5}, {0.7, 0.8}, {1.0, 0.7}}}});
+  ASSERT_THAT(tables, SizeIs(3));
+  EXPECT_THAT(tables[0].columns, ElementsAre("kick", "mean"));
+  EXPECT_THAT(tables[0].rows[0].values, ElementsAre(DoubleEq(0.7), DoubleEq(0.8)));
+  EXPECT_EQ(tables[0].best, report::Best::kHighest);
+  EXPECT_THAT(tables[1].rows[0].values, ElementsAre(DoubleEq(0.2), DoubleEq(0.2)));
+  ASSERT_THAT(tables[2].rows, SizeIs(3));
+  EXPECT_EQ(tables[2].rows[0].name, "more");
+  EXPECT_THAT(tables[2].rows[0].values,  // .1, 0, .1; -.1, 0, -.3
+              ElementsAre(DoubleNear(0.2 / 3, 1e-12), DoubleNear(-0.4 / 3, 1e-12)));
+  EXPECT_EQ(tables[2].rows[1].name, "more, deviation");
+  EXPECT_THAT(tables[2].rows[2].values, ElementsAre(DoubleNear(2.0 / 3, 1e-12), 0));
 }
 
 }  // namespace

@@ -57,15 +57,6 @@ TEST(LatentFeaturesTest, PointDoesNotDependOnTheBatch) {
   EXPECT_GT(Distance(together[0], together[1]), 1e-3);
 }
 
-TEST(LatentFeaturesTest, NeverSeesTheFollower) {
-  dataset::Dataset dataset = MadeUpPairs(1);
-  const checkpoint::Checkpoint model = Model(dataset, checkpoint::GeneratorVariant::kPaper);
-  const metrics::FeatureSet before = Features(model, dataset, {0});
-  for (motion::Vec3& point : dataset.sequences[0].pair.follower.poses.all())
-    point += motion::Vec3{3, 2, 1};
-  EXPECT_EQ(Distance(before[0], Features(model, dataset, {0})[0]), 0);
-}
-
 TEST(LatentFeaturesTest, LabelsMatterToTheModelsThatReadThem) {
   const dataset::Dataset dataset = MadeUpPairs(1);
   const checkpoint::Checkpoint labelled = Model(dataset, checkpoint::GeneratorVariant::kPaper),

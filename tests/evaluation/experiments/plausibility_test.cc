@@ -12,7 +12,7 @@ namespace {
 using motion::Vec3;
 
 constexpr double kRate = 15;
-constexpr int kLeftShoulder = 3, kLeftElbow = 4, kLeftHand = 5, kRightHand = 8, kRightFoot = 14;
+constexpr int kLeftElbow = 4, kLeftHand = 5, kRightHand = 8;
 
 // Stands and sways, and faces -z.
 motion::Poses Person() { return authoring::MakeLeader("idle", 4, kRate); }
@@ -54,8 +54,7 @@ double Figure(const motion::Poses& leader, const motion::Poses& follower, const 
 TEST(PlausibilityTest, AStandingPairHasNoFaults) {
   const PairFigures figures = Measured(Person(), Partner(1.2f));
   EXPECT_EQ(figures.values.size(), Plausibility::Figures().size());
-  for (const char* name : {"twisted clips", "both feet", "heads", "trunks", "through", "planes",
-                           "turns", "shoulders"}) {
+  for (const char* name : {"twisted clips", "both feet", "heads", "trunks", "turns"}) {
     EXPECT_EQ(Figure(figures, name), 0) << name;
   }
   EXPECT_NEAR(Figure(figures, "distance"), 1.2, 0.1);
@@ -63,10 +62,9 @@ TEST(PlausibilityTest, AStandingPairHasNoFaults) {
   for (const double fault : figures.faults) EXPECT_EQ(fault, 0);
 }
 
-TEST(PlausibilityTest, AFollowerWhoTurnsAwayAndLeaves) {
+TEST(PlausibilityTest, AFollowerWhoTurnsAway) {
   motion::Poses follower = Partner(1.2f);
   EXPECT_LT(Figure(Person(), follower, "facing"), 20);
-  EXPECT_NEAR(Figure(Person(), follower, "farthest"), 1.2, 0.15);
   // Half of the frames, farther away and with the back to the leader.
   const int frames = follower.frame_count();
   const motion::Poses person = Person();
@@ -76,7 +74,6 @@ TEST(PlausibilityTest, AFollowerWhoTurnsAwayAndLeaves) {
     }
   }
   EXPECT_NEAR(Figure(Person(), follower, "facing"), 90, 15);
-  EXPECT_NEAR(Figure(Person(), follower, "farthest"), 3, 0.15);
 }
 
 TEST(PlausibilityTest, HandsAreMeasuredWhileOneIsReachedOut) {
@@ -89,13 +86,6 @@ TEST(PlausibilityTest, HandsAreMeasuredWhileOneIsReachedOut) {
   EXPECT_EQ(Measured(leader, Partner(1.4f), {false}).faults[9], 0);
 }
 
-TEST(PlausibilityTest, AFootInsideTheBody) {
-  const motion::Poses leader = ReachingOut(kRightFoot, 0.8f, 0.95f);
-  EXPECT_GT(Figure(leader, Partner(0.8f), "through"), 0.9);
-  const motion::Poses shorter = ReachingOut(kRightFoot, 0.6f, 0.9f);
-  EXPECT_EQ(Figure(shorter, Partner(1.2f), "through"), 0);
-}
-
 TEST(PlausibilityTest, AJointThatSnapsIsFoundInItsFrame) {
   motion::Poses follower = Partner(1.2f);
   for (int t = 30; t < follower.frame_count(); ++t) {
@@ -103,50 +93,8 @@ TEST(PlausibilityTest, AJointThatSnapsIsFoundInItsFrame) {
   }
   const PairFigures figures = Measured(Person(), follower);
   EXPECT_EQ(Figure(figures, "turns"), 1);
-  EXPECT_GT(Figure(figures, "fastest turn"), 900);
   EXPECT_GT(figures.faults[30], 4.9);
   EXPECT_EQ(figures.faults[28], 0);
-}
-
-TEST(PlausibilityTest, ABentArmWhosePlaneTurns) {
-  motion::Poses follower = Partner(1.2f);
-  for (int t = 0; t < follower.frame_count(); ++t) {
-    const Vec3 shoulder = follower.at(t, kLeftShoulder);
-    const float side = t < 30 ? 0.15f : -0.15f;
-    follower.at(t, kLeftElbow) = shoulder + Vec3{0, -0.25f, 0};
-    follower.at(t, kLeftHand) = shoulder + Vec3{side, -0.45f, 0};
-  }
-  EXPECT_EQ(Figure(Person(), follower, "planes"), 1);
-}
-
-TEST(PlausibilityTest, ShouldersOneAboveTheOther) {
-  motion::Poses follower = Partner(1.2f);
-  for (int t = 0; t < follower.frame_count() / 2; ++t) follower.at(t, kLeftShoulder).y -= 0.3f;
-  EXPECT_NEAR(Figure(Person(), follower, "shoulders"), 0.5, 0.02);
-}
-
-TEST(PlausibilityTest, FeetThatStayApart) {
-  motion::Poses follower = Partner(1.2f);
-  EXPECT_EQ(Figure(Person(), follower, "astride"), 0);
-  for (int t = 10; t < 40; ++t) follower.at(t, kRightFoot).z -= 0.8f;
-  follower.at(30, kRightFoot).z += 0.8f;
-  EXPECT_NEAR(Figure(Person(), follower, "astride"), 20 / kRate, 1e-6);
-}
-
-TEST(PlausibilityTest, AHandThatIsHeldOut) {
-  const motion::Poses person = Person();
-  const auto held_out = [&person](Vec3 from_shoulder) {
-    motion::Poses follower = Partner(1.2f);
-    for (int t = 5; t < 35; ++t) {
-      follower.at(t, kLeftHand) = follower.at(t, kLeftShoulder) + from_shoulder;
-      follower.at(t, kLeftElbow) =
-          Lerp(follower.at(t, kLeftShoulder), follower.at(t, kLeftHand), 0.5f);
-    }
-    return Figure(person, follower, "held out");
-  };
-  EXPECT_NEAR(held_out({-0.5f, 0, 0}), 30 / kRate, 1e-6) << "to the side";
-  EXPECT_EQ(held_out({0, -0.5f, 0}), 0) << "down";
-  EXPECT_EQ(held_out({0, 0, 0.5f}), 0) << "to the leader";
 }
 
 TEST(PlausibilityTest, CombinesMeansAndLargest) {
@@ -155,7 +103,7 @@ TEST(PlausibilityTest, CombinesMeansAndLargest) {
   b.values.assign(Plausibility::Figures().size(), 4);
   const PairFigures combined{Combine({a, b}), {}};
   EXPECT_EQ(Figure(combined, "speed"), 2.5);
-  EXPECT_EQ(Figure(combined, "fastest turn"), 4);
+  EXPECT_EQ(Figure(combined, "hips off"), 4);
 }
 
 TEST(FindWorstPartTest, FindsThePartWithTheMostFaults) {

@@ -67,15 +67,5 @@ TEST(ToldApartTest, NoiseDoesNotDistinguishAnswers) {
   EXPECT_LE(*told, 0.7);
 }
 
-TEST(ToldApartTest, MissingAnswersAreRejected) {
-  const dataset::Dataset dataset = MadeUpPairs(3);
-  const auto same = [](motion::Poses*) {};
-  const std::vector<metrics::ScoredMotion> answers = Answers(dataset, true, same);
-  EXPECT_EQ(ToldApart(dataset, {}, answers, Small()).status().code(),
-            absl::StatusCode::kInvalidArgument);
-  EXPECT_EQ(ToldApart(dataset, answers, {}, Small()).status().code(),
-            absl::StatusCode::kInvalidArgument);
-}
-
 }  // namespace
 }  // namespace duet::evaluation::experiments

@@ -71,23 +71,6 @@ TEST(MotionClassifier, IsDeterministic) {
   EXPECT_NE(Trained(dataset, options).hash(), a.hash());
 }
 
-// Lengths differ: what is padded beside a motion must not reach it.
-TEST(MotionClassifier, ResultDoesNotDependOnTheBatch) {
-  const dataset::Dataset dataset = MadeUpPairs(6);
-  const MotionClassifier judge = Trained(dataset, Small());
-  const std::vector<metrics::ScoredMotion> all = Followers(dataset, false);
-  const auto together = judge.Probabilities(dataset, all);
-  const metrics::FeatureSet features = judge.Features(dataset, all);
-  ASSERT_THAT(features, SizeIs(all.size()));
-  for (size_t i = 0; i < all.size(); ++i) {
-    const auto alone = judge.Probabilities(dataset, {all[i]});
-    EXPECT_NEAR(alone[0][0], together[i][0], 1e-5) << i;
-    const metrics::FeatureSet own = judge.Features(dataset, {all[i]});
-    ASSERT_EQ(own[0].size(), features[i].size());
-    for (size_t f = 0; f < own[0].size(); ++f) EXPECT_NEAR(own[0][f], features[i][f], 1e-5);
-  }
-}
-
 TEST(MotionClassifier, IsInvariantToThePlaceInTheWorld) {
   const dataset::Dataset dataset = MadeUpPairs(6);
   dataset::Dataset moved = dataset;

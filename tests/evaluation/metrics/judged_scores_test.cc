@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "tests/support/matchers.h"
 
@@ -14,6 +16,102 @@ namespace {
 using ::testing::NanSensitiveDoubleEq;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+TEST(ConfusionTest, CountsTheLikeliestClassOfEachMotion) {
+  Confusion confusion(3);
+  confusion.AddLikeliest({0, 0, 1, 1, 1}, {{0.9f, 0.1f, 0},
+                                           {0.2f, 0.8f, 0},
+                                           {0.5f, 0.5f, 0},  // the first of equals
+                                           {0, 1, 0},
+                                           {0, 0.9f, 0.1f}});
+  EXPECT_EQ(confusion.count(0, 0), 1);
+  EXPECT_EQ(confusion.count(0, 1), 1);
+  EXPECT_EQ(confusion.count(1, 0), 1);
+  EXPECT_THAT(confusion.ClassAccuracies(),
+              ElementsAre(0.5, DoubleEq(2.0 / 3), NanSensitiveDoubleEq(kNone)));
+  EXPECT_DOUBLE_EQ(confusion.Accuracy(), 0.6);
+  EXPECT_DOUBLE_EQ(confusion.MeanClassAccuracy(), 3.5 / 6);
+  EXPECT_TRUE(std::isnan(Confusion(2).Accuracy()));
+}
+
+double Frechet(const FeatureSet& a, const FeatureSet& b) {
+  const absl::StatusOr<double> distance = FrechetDistance(a, b);
+  EXPECT_THAT(distance, IsOk());
+  return distance.value_or(-1);
+}
+
+FeatureSet RandomSet(int samples, int width, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  FeatureSet set(static_cast<size_t>(samples), std::vector<float>(static_cast<size_t>(width)));
+  for (auto& row : set) {
+    for (size_t i = 0; i < row.size(); ++i) row[i] = normal(random) * static_cast<float>(i + 1);
+  }
+  return set;
+}
+
+Eigen::MatrixXd Centred(const FeatureSet& set, Eigen::RowVectorXd* mean) {
+  Eigen::MatrixXd rows(set.size(), set[0].size());
+  for (size_t i = 0; i < set.size(); ++i) {
+    for (size_t j = 0; j < set[i].size(); ++j) {
+      rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = set[i][j];
+    }
+  }
+  *mean = rows.colwise().mean();
+  rows.rowwise() -= *mean;
+  return rows / std::sqrt(static_cast<double>(set.size() - 1));
+}
+
+Eigen::MatrixXd SymmetricRoot(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+// The textbook form, by eigen-decomposition: Tr (S1^(1/2) S2 S1^(1/2))^(1/2).
+double TextbookFrechet(const FeatureSet& a, const FeatureSet& b) {
+  Eigen::RowVectorXd mean_a, mean_b;
+  const Eigen::MatrixXd rows_a = Centred(a, &mean_a), rows_b = Centred(b, &mean_b);
+  const Eigen::MatrixXd sa = rows_a.transpose() * rows_a, sb = rows_b.transpose() * rows_b;
+  const Eigen::MatrixXd root = SymmetricRoot(sa);
+  return (mean_a - mean_b).squaredNorm() + sa.trace() + sb.trace() -
+         2 * SymmetricRoot(root * sb * root).trace();
+}
+
+TEST(FrechetDistanceTest, EqualsTheTextbookForm) {
+  const FeatureSet a = RandomSet(40, 6, 1), b = RandomSet(30, 6, 2);
+  EXPECT_NEAR(Frechet(a, b), TextbookFrechet(a, b), 1e-8);
+  EXPECT_NEAR(Frechet(a, b), Frechet(b, a), 1e-9);
+}
+
+TEST(FrechetDistanceTest, FewerSamplesThanFeaturesIsExact) {
+  const FeatureSet a = RandomSet(5, 40, 3), b = RandomSet(7, 40, 4);
+  EXPECT_NEAR(Frechet(a, b), TextbookFrechet(a, b), 1e-3);
+  EXPECT_NEAR(Frechet(a, a), 0, 1e-6);
+  // Many against few: one factor is reduced, the other is not.
+  const FeatureSet many = RandomSet(60, 40, 5);
+  EXPECT_NEAR(Frechet(many, a), TextbookFrechet(many, a), 1e-3);
+  // Without spread, sets differ by their means.
+  EXPECT_NEAR(Frechet(FeatureSet(3, {1, 2, 2}), FeatureSet(4, {0, 0, 0})), 9, 1e-9);
+}
+
+TEST(FrechetDistanceTest, InvalidFeatureSetsAreRejected) {
+  const FeatureSet good = {{1, 2}, {3, 4}};
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const FeatureSet& bad : {FeatureSet{}, FeatureSet{{1, 2}}, FeatureSet{{1, 2}, {3, nan}}}) {
+    EXPECT_EQ(FrechetDistance(bad, good).status().code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_EQ(FrechetDistance(good, bad).status().code(), absl::StatusCode::kInvalidArgument);
+  }
+}
+
+TEST(NeighbourAccuracyTest, CountsSamplesWhoseNearestIsOfTheirClass) {
+  // 0 and 1 are each other's nearest, 5 is nearest to 1, and 9 to 5.
+  const FeatureSet line = {{0, 3}, {1, 3}, {5, 3}, {9, 3}};
+  EXPECT_EQ(*NeighbourAccuracy(line, {0, 0, 1, 1}), 0.75);
+  EXPECT_EQ(*NeighbourAccuracy(line, {0, 1, 0, 1}), 0.0);
+  EXPECT_THAT(NeighbourAccuracy({{0}}, {0}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("at least 2 vectors, got 1")));
+}
 
 TEST(AccuracyByClass, PoolsTheFolds) {
   // Class 0: right, right, wrong over two folds; class 1: wrong once; class 2: never asked for.
@@ -28,29 +126,19 @@ JudgedFold Fold(float at, float apart) {
   return {{0, 1, 0}, {{1, 0}, {0, 1}, {1, 0}}, {{at, 0}, {9, 9}, {at + apart, 0}}};
 }
 
-TEST(FrechetByClass, AveragesTheFoldsThatHaveTwoMotions) {
+TEST(FrechetByClass, AveragesTheFoldsThatHaveTwoMotionsOnBothSides) {
   // Sets that differ by a shift alone: the squared shift.
-  const absl::StatusOr<std::vector<double>> distances =
-      FrechetByClass({Fold(3, 1), Fold(1, 2)}, {Fold(0, 1), Fold(0, 2)}, 2);
-  ASSERT_TRUE(distances.ok()) << distances.status();
+  const JudgedFold one = {{0}, {{1, 0}}, {{5, 5}}};
+  const auto distances =
+      FrechetByClass({Fold(3, 1), Fold(1, 2), Fold(3, 1)}, {Fold(0, 1), Fold(0, 2), one}, 2);
+  ASSERT_THAT(distances, IsOk());
   EXPECT_THAT(*distances,
               ElementsAre(DoubleNear((9.0 + 1.0) / 2, 1e-6), NanSensitiveDoubleEq(kNone)));
 }
 
-TEST(FrechetByClass, LeavesOutAFoldWithOneCapturedMotion) {
-  const JudgedFold one = {{0}, {{1, 0}}, {{5, 5}}};
-  const absl::StatusOr<std::vector<double>> distances =
-      FrechetByClass({Fold(3, 1), Fold(2, 1)}, {one, Fold(0, 1)}, 2);
-  ASSERT_TRUE(distances.ok()) << distances.status();
-  EXPECT_NEAR(distances->front(), 4, 1e-6);
-}
-
-TEST(FrechetByClass, RefusesFeaturesThatAreNotFinite) {
-  const JudgedFold broken = Fold(std::numeric_limits<float>::infinity(), 1);
-  EXPECT_TRUE(absl::IsInvalidArgument(FrechetByClass({broken}, {Fold(0, 1)}, 2).status()));
-}
-
 TEST(DiversityByClass, NeverComparesAcrossFolds) {
+  EXPECT_DOUBLE_EQ(Diversity({{0, 0}, {3, 4}, {0, 4}}), (5 + 4 + 3) / 3.0);
+  EXPECT_EQ(Diversity({{1, 1}}), 0);
   EXPECT_THAT(DiversityByClass({Fold(0, 1), Fold(1000, 3)}, 2),
               ElementsAre(DoubleNear(2, 1e-6), NanSensitiveDoubleEq(kNone)));
 }

@@ -44,20 +44,6 @@ TEST(FoldScorer, ScoresPerfectAnswersLikeTheCapturedFollowers) {
   EXPECT_THAT(scorer->JudgeSettings(), SizeIs(2));
 }
 
-TEST(FoldScorer, TrainsNoJudgeUnlessAsked) {
-  const dataset::Dataset dataset = MadeUpPairs(6);
-  const absl::StatusOr<FoldScorer> scorer =
-      FoldScorer::Create(dataset, *LeaveOut(dataset, {"a"}), FoldScorer::Judging::kNone);
-  ASSERT_TRUE(scorer.ok()) << scorer.status();
-  OneAnswerEach answers = Captured(dataset, *scorer);
-  for (metrics::ScoredMotion& motion : answers[0]) motion.follower.at(0, 0).x += 1;
-  const absl::StatusOr<report::MethodFigures> figures = scorer->Score("moved", answers);
-  ASSERT_TRUE(figures.ok()) << figures.status();
-  EXPECT_EQ(figures->by_metric.count(report::kAccuracy), 0u);
-  EXPECT_THAT(figures->by_metric.at("afd"), Each(Gt(0)));
-  EXPECT_THAT(scorer->JudgeSettings(), SizeIs(0));
-}
-
 TEST(FoldScorer, ScoresManyAnswersBesideTheCapturedOnes) {
   const dataset::Dataset dataset = MadeUpPairs(6);
   const absl::StatusOr<FoldScorer> scorer =
@@ -86,12 +72,6 @@ TEST(FoldScorer, ScoresManyAnswersBesideTheCapturedOnes) {
   EXPECT_THAT(made->by_metric[report::kPooledFrechet], ElementsAre(Gt(1e-3)));
   EXPECT_THAT(made->by_metric[report::kFilteredFrechet], ElementsAre(Gt(1e-3)));
   EXPECT_THAT(made->by_metric[report::kDiversity], SizeIs(2));
-}
-
-TEST(LeaveOut, UnknownSubjectIsNamed) {
-  const absl::Status status = LeaveOut(MadeUpPairs(3), {"zoe"}).status();
-  EXPECT_TRUE(absl::IsNotFound(status)) << status;
-  EXPECT_THAT(std::string(status.message()), HasSubstr("zoe"));
 }
 
 TEST(LeaveOut, DefaultsToEverySubject) {

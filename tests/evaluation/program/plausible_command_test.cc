@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "model/motion/skeleton.h"
-#include "tests/evaluation/support/read_section.h"
 #include "tests/evaluation/support/run_command.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "model/evaluation/program/flags.h"
+#include "model/evaluation/program/experiment.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -29,32 +29,24 @@ std::string Recorded(std::vector<std::string> words) {
   return RecordedCommand(*command);
 }
 
-TEST(RecordedCommandTest, FoldersAreReplacedByPlaceholders) {
-  EXPECT_EQ(Recorded({"measure", "--data", "/home/me/sbu", "--out", "/tmp/results"}),
-            "duet-eval measure --data DIR --out RESULTS");
-  EXPECT_EQ(Recorded({"measure", "--data=x", "--checkpoint", "/models/sbu/2"}),
-            "duet-eval measure --data DIR --checkpoint CHECKPOINT");
-}
-
-TEST(RecordedCommandTest, AFolderThatIsCheckedIsReplacedToo) {
-  EXPECT_EQ(Recorded({"measure", "--data", "x", "--leaders", "/tmp"}),
-            "duet-eval measure --data DIR --leaders DIR");
-}
-
-TEST(RecordedCommandTest, RunsKeepTheirNames) {
-  EXPECT_EQ(Recorded({"measure", "--runs", "ours=/a/b", "--data", "x", "--runs", "/a/theirs/"}),
-            "duet-eval measure --data DIR --runs ours=RUNS --runs theirs=RUNS");
-}
-
-TEST(RecordedCommandTest, OnlyFlagsThatWereGivenAreRecorded) {
-  EXPECT_EQ(
-      Recorded({"measure", "--subjects", "s01,s02", "--data", "x", "--as-served", "--seed", "7"}),
-      "duet-eval measure --data DIR --subjects s01,s02 --as-served --seed 7");
-}
-
-TEST(RecordedCommandTest, ValuesAreQuotedForAShell) {
-  EXPECT_EQ(Recorded({"measure", "--data", "x", "--title", "It's a sweep"}),
-            "duet-eval measure --data DIR --title 'It'\\''s a sweep'");
+TEST(RecordedCommandTest, HasPlaceholdersForFoldersAndOnlyFlagsThatWereGiven) {
+  const struct {
+    std::vector<std::string> words;
+    const char* recorded;
+  } kCases[] = {
+      {{"--data", "/home/me/sbu", "--out", "/tmp/results"}, "--data DIR --out RESULTS"},
+      {{"--data=x", "--checkpoint", "/models/sbu/2"}, "--data DIR --checkpoint CHECKPOINT"},
+      {{"--data", "x", "--leaders", "/tmp"}, "--data DIR --leaders DIR"},  // which is checked
+      {{"--runs", "ours=/a/b", "--data", "x", "--runs", "/a/theirs/"},
+       "--data DIR --runs ours=RUNS --runs theirs=RUNS"},
+      {{"--subjects", "s01,s02", "--data", "x", "--as-served", "--seed", "7"},
+       "--data DIR --subjects s01,s02 --as-served --seed 7"},
+      {{"--data", "x", "--title", "It's a sweep"}, "--data DIR --title 'It'\\''s a sweep'"}};
+  for (const auto& c : kCases) {
+    std::vector<std::string> words = c.words;
+    words.insert(words.begin(), "measure");
+    EXPECT_EQ(Recorded(std::move(words)), std::string("duet-eval measure ") + c.recorded);
+  }
 }
 
 }  // namespace

@@ -1,12 +1,33 @@
 #include "tests/evaluation/support/run_command.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <utility>
 
-#include "tests/evaluation/support/read_section.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {
+namespace {
+
+// The only section in a folder of results. Fails the test, and returns null, unless there is one.
+nlohmann::json ReadSection(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    files.push_back(entry.path());
+  }
+  EXPECT_EQ(files.size(), 1u);
+  if (files.size() != 1) return nullptr;
+  return nlohmann::json::parse(ReadTestFile(files.front()));
+}
+
+}  // namespace
+
+std::vector<std::string> RowNames(const nlohmann::json& table) {
+  std::vector<std::string> names;
+  for (const nlohmann::json& row : table.at("rows")) names.push_back(row.at("name"));
+  return names;
+}
 
 absl::Status RunCommand(AddCommand add, std::vector<std::string> words) {
   CLI::App app;

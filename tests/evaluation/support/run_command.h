@@ -20,6 +20,9 @@ absl::Status RunCommand(AddCommand add, std::vector<std::string> words);
 // The same with --out FOLDER; returns the section that the command writes.
 absl::StatusOr<nlohmann::json> RunForSection(AddCommand add, std::vector<std::string> words);
 
+// The names of a table's rows.
+std::vector<std::string> RowNames(const nlohmann::json& table);
+
 }  // namespace duet::test
 
 #endif  // DUET_TESTS_EVALUATION_SUPPORT_RUN_COMMAND_H_
