@@ -299,7 +299,7 @@ TEST_F(MotionFile, AFollowerIsWrittenOnARigInTheRigsOwnFormat) {
         FormatOntoRig(pair_.follower, {folder_ / rig, {}}, format).status().message());
   };
   EXPECT_THAT(refused("rig.csv", Format::kGlb), HasSubstr("rig: expected a .bvh, .glb or .gltf"));
-  EXPECT_THAT(refused("rig.fbx", Format::kGlb), HasSubstr("convert it with duet-fbx"));
+  EXPECT_THAT(refused("rig.fbx", Format::kGlb), HasSubstr("convert it with duet_fbx.py"));
   EXPECT_THAT(refused("rig.bvh", Format::kGlb), HasSubstr("it is written in its own format"));
   EXPECT_THAT(refused("none.glb", Format::kGlb), HasSubstr("none.glb: no such file"));
 }
