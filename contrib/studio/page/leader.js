@@ -145,6 +145,9 @@ class Clip {
     Object.assign(this, {name, frameRate, loops, turns});
     const first = body.place(poses[0]);
     this.poses = poses.map((pose) => unplaced(pose, first));
+    // How far hands and feet come forward, metres.
+    const limbs = body.sides.flatMap(({foot, hands}) => [foot, ...hands]).filter((joint) => joint >= 0);
+    this.reach = Math.max(...this.poses.flatMap((pose) => limbs.map((joint) => body.at(pose, joint)[2])));
     const drift = body.place(this.poses[this.poses.length - 1]);
     drift.yaw = Math.atan2(Math.sin(drift.yaw), Math.cos(drift.yaw));
     if (!loops) return;
@@ -177,6 +180,7 @@ class Leader {
     this.step = 0;               // phase of the steps
     this.speed = this.spin = 0;  // forward in metres a second, to the left in radians a second
     this.wanted = {forward: 0, left: 0};  // -1 to 1, by keys
+    this.backs = false;                   // steps back, whatever the keys want
     this.lean = {forward: 0, left: 0};    // radians, by dragging
     this.bent = {forward: 0, left: 0, forwardSpeed: 0, leftSpeed: 0};
     this.clip = null;
@@ -231,7 +235,7 @@ class Leader {
   }
 
   walk(seconds) {
-    const {forward, left} = this.wanted;
+    const {forward, left} = this.backs ? {forward: -1, left: 0} : this.wanted;
     const ease = 1 - Math.exp(-seconds / EASE_SECONDS);
     const still = this.clip ? 0 : 1;
     this.speed = mix(this.speed, still * forward * (forward > 0 ? WALK_SPEED : BACK_SPEED), ease);

@@ -82,6 +82,10 @@ function readBvh(text, names) {
 
 // What the keys 1 to 6 throw: the samples, or the figures of a dance.
 
+// Blows go through a partner who stands too near: the leader first steps back until there is room.
+const BLOWS = ['kick', 'push', 'punch'];
+const ROOM_METRES = 0.2;     // from the furthest hand or ankle to the middle of the partner's hips
+const STEP_BACK_SECONDS = 0.8;  // at most
 const BEAT_FRAMES = 10;   // of samples/salsa.bvh
 const BAR_BEATS = 8;
 const DANCE_BPM = 180;
@@ -153,8 +157,10 @@ function standing(like, body, bones) {
 
 // Chooses the leader's next clip.
 class Choreography {
-  constructor(leader, {moves, isDance}) {
-    Object.assign(this, {leader, moves, isDance});
+  // `distance()`: from the leader to the partner, metres.
+  constructor(leader, {moves, isDance}, distance) {
+    Object.assign(this, {leader, moves, isDance, distance});
+    this.backing = 0;      // seconds for which the leader still steps back before the move
     this.current = null;   // the move being done
     this.queued = null;
     leader.ended = (clip, over) => this.next(over);
@@ -172,9 +178,24 @@ class Choreography {
   begin(move, over) {
     this.current = move;
     this.queued = null;
-    this.leader.play(move && move.clip, over);
+    this.backing = move && this.isNear(move) ? STEP_BACK_SECONDS : 0;
+    this.leader.backs = this.backing > 0;
+    this.leader.play(this.backing > 0 ? null : move && move.clip, over);
     this.began?.(move);
     return true;
+  }
+
+  isNear({label, clip}) {
+    return BLOWS.includes(label) && this.distance() < clip.reach + ROOM_METRES;
+  }
+
+  // Begins the move for which the leader has stepped back.
+  stepBack(seconds) {
+    if (this.backing === 0) return;
+    this.backing = this.isNear(this.current) ? Math.max(0, this.backing - seconds) : 0;
+    if (this.backing > 0) return;
+    this.leader.backs = false;
+    this.leader.play(this.current.clip);
   }
 
   next(over) {
@@ -186,6 +207,7 @@ class Choreography {
     const {leader, current} = this;
     const bar = BAR_BEATS * 60 / DANCE_BPM;
     const before = leader.clipTime;
+    this.stepBack(seconds);
     leader.advance(seconds);
     const over = leader.clipTime % bar;
     if (this.queued && current === this.current && current?.clip.loops

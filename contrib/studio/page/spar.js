@@ -137,7 +137,7 @@ async function chooseModel(model) {
   spar.session?.close();
   spar.session = null;
   const leader = new Leader(body, moves.rest);
-  const choreography = new Choreography(leader, moves);
+  const choreography = new Choreography(leader, moves, () => distance(body, leader.pose, spar.partner));
   Object.assign(spar, {model, body, leader, choreography, recording: new Recording(), seen: false, asked: null});
   spar.playback = new Playback();  // it begins where showStage places the partner
   choreography.began = (move) => {
@@ -150,6 +150,12 @@ async function chooseModel(model) {
   element('help').textContent = helpFor(moves);
   setWeights({});
   connect();
+}
+
+// Between two people, along the floor.
+function distance(body, ...poses) {
+  const [a, b] = poses.map((pose) => body.hips(pose));
+  return Math.hypot(a[0] - b[0], a[2] - b[2]);
 }
 
 // How the moves are thrown, by touch or by keys.

@@ -101,6 +101,29 @@ class SparTest(unittest.TestCase):
                 self.assertTrue(0.3 < fastest < 12, fastest)  # metres a second
                 self.assertEqual(page.state()["move"], "")
 
+    def test_leader_steps_back_before_a_blow_that_would_go_through_the_partner(self):
+        page = self.open(frozen=True)
+        page.evaluate("""(() => {
+          spar.partner = placed(spar.leader.pose, {x: 0, z: 0.95, yaw: Math.PI});
+          showFollower = () => {};
+        })()""")
+        begun = "spar.leader.clip !== null"
+        room = "distance(spar.body, spar.leader.pose, spar.partner) - spar.leader.clip.reach"
+        page.press("4")  # a hug comes as near as it likes
+        self.assertTrue(page.evaluate(begun))
+        self.pass_time(page, 6)
+        page.press("1")
+        self.assertEqual((page.state()["move"], page.evaluate(begun)), ("kick", False))
+        self.pass_time(page, 0.9)
+        self.assertTrue(page.evaluate(begun))
+        self.assertGreater(page.evaluate(room), 0.1)
+        # A step of the visitor's own ends it.
+        self.pass_time(page, 6)
+        page.evaluate("spar.partner = placed(spar.leader.pose, {...spar.leader.root, z: spar.leader.root.z + 0.5})")
+        page.press("6")
+        page.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowUp")
+        self.assertEqual((page.state()["move"], page.evaluate("spar.leader.backs")), ("", False))
+
     def test_nothing_is_asked_for_until_a_move_and_after_it(self):
         page = self.open(frozen=True)
         self.assertEqual(self.weights(page), {})
