@@ -62,8 +62,6 @@ def answered(answer, joint, frame):
 
 
 # ---- The gallery.
-assert bpy.ops.duet.react() == {"FINISHED"}
-state["own_seed"] = settings.seed  # the server's choice
 assert bpy.ops.duet.show_eight() == {"FINISHED"}
 state["seeds"] = [int(answer.seed) for answer in settings.answers]
 state["faults"] = [answer.faults for answer in settings.answers]
