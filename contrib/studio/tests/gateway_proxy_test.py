@@ -41,6 +41,7 @@ class GatewayProxyTest(unittest.TestCase):
         server = stack.enter_context(tools.running_server())
         gateway = Gateway(server.address)
         stack.callback(gateway.stop)
+        cls.gateway_port = gateway.port
         cls.port = tools.free_port()
         stack.enter_context(haproxy(cls.folder, cls.port, gateway.port,
                                     DUET_WEB_REQUESTS_PER_10S="5000"))
