@@ -4,7 +4,6 @@ every kind of failure."""
 import json
 import math
 import pathlib
-import socket
 import struct
 
 import tools
@@ -177,18 +176,6 @@ class ClientServerTest(tools.ServedTest):
         mine = {path.name for path in self.folder.glob(out["json"].stem + ".*")}
         self.assertEqual(len(mine), 6, mine)
 
-    def test_follower_starts_at_follower_start(self):
-        plain, told = self.out("plain.json"), self.out("told.json")
-        self.good(tools.sample("kick"), "kick=1", out=plain)
-        pair = Pair(plain)
-        start = pair.at(pair.follower, 0, "torso")
-        moved = [start[0] + 0.3, start[1], start[2] + 0.3]
-        self.good(tools.sample("kick"), "kick=1", out=told,
-                  more=("--follower-start", ",".join(map(str, moved))))
-        pair = Pair(told)
-        began = pair.at(pair.follower, 0, "torso")
-        self.assertLess(distance(began, moved), distance(began, start))
-
     def test_bad_input_exits_with_42_and_is_named(self):
         out = self.out("html")
         kick = tools.sample("kick")
@@ -205,23 +192,6 @@ class ClientServerTest(tools.ServedTest):
                      more=("--model", "nobody"))
         self.refused(42, ["NOT_FOUND"], kick, "kick=1", out=out, more=("--model", "sbu@99"))
         self.assertFalse(out.exists())
-
-    def test_missing_server_exits_with_1(self):
-        with socket.socket() as unused:  # bound, but nobody listens
-            unused.bind(("127.0.0.1", 0))
-            address = "127.0.0.1:%d" % unused.getsockname()[1]
-            for arguments in (("models",),
-                              ("synthesize", "--leader", tools.sample("kick"), "--label", "kick=1",
-                               "--out", self.out("html"))):
-                result = tools.duet(*arguments, "--server", address, "--wait", "1")
-                self.assertEqual(result.returncode, 1, result.stderr)
-                self.assertIn("UNAVAILABLE", result.stderr)
-                away = f"duet: the server at {address} is not running: it refused the connection"
-                self.assertRegex(result.stderr, rf"^{away}; retrying\n{away} \(\d+ attempts in [\d.]+ s\) ")
-                self.assertIn(f"Start a duet-server at {address}, or name another one with --server",
-                              result.stderr)
-                for word in ("ipv4:", "failed to connect", "UNKNOWN", "last error"):
-                    self.assertNotIn(word, result.stderr)
 
     def test_expired_deadline_exits_with_1(self):
         # Half a minute takes a dozen windows, each of about as long as the deadline.
