@@ -13,7 +13,6 @@
 #include "absl/strings/string_view.h"
 #include "model/authoring/made_leaders.h"
 #include "model/base/split_mix.h"
-#include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/body/build.h"
 #include "model/dataset/dataset.h"
@@ -42,8 +41,10 @@ constexpr double kStillSeconds = 15, kSettlingSeconds = 3, kLastSeconds = 2;
 struct PlausibleArguments {
   std::string leaders;
   double seconds = 60;
-  std::string data;  // captured pairs; may be empty
-  int worst = 0;     // answers to picture
+  std::string data;   // captured pairs; may be empty
+  int worst = 0;      // answers to picture
+  bool each = false;  // a row for each answer, too
+  bool still = true;  // also leaders who do not move
   ModelChoice models;
   experiments::AskedSamples asked;
   SectionFlags section = {"19_plausible", "Plausible followers of foreign leaders"};
@@ -126,13 +127,20 @@ absl::Status AddAnswers(const PlausibleArguments& arguments, const engine::Synth
   return absl::OkStatus();
 }
 
-// A row for each class with the figures of its pairs, and their mean. Shapes: pairs [classes].
-report::Table FiguresTable(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<std::vector<experiments::PairFigures>>& pairs) {
+// A table with a column for each figure of an answer.
+report::Table FiguresTable(const std::string& title) {
   report::Table table{title};
   for (const experiments::PairFigure& figure : experiments::Plausibility::Figures()) {
     table.columns.push_back(figure.name);
   }
+  table.decimals = 3;
+  return table;
+}
+
+// A row for each class with the figures of its pairs, and their mean. Shapes: pairs [classes].
+report::Table FiguresTable(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<std::vector<experiments::PairFigures>>& pairs) {
+  report::Table table = FiguresTable(title);
   std::vector<std::vector<double>> rows;
   for (size_t c = 0; c < classes.size(); ++c) {
     if (pairs[c].empty()) continue;
@@ -140,7 +148,6 @@ report::Table FiguresTable(const std::string& title, const std::vector<std::stri
     table.rows.push_back({classes[c], rows.back()});
   }
   table.rows.push_back({"mean", report::ColumnMeans(rows)});
-  table.decimals = 3;
   table.notes = experiments::Plausibility::Notes();
   return table;
 }
@@ -190,6 +197,18 @@ nlohmann::ordered_json PosePlot(const std::string& title, const engine::ModelDes
           {"pairs", nlohmann::ordered_json::array({std::move(pair)})}};
 }
 
+// A row for each answer, so that answers of two programs can be compared one by one.
+report::Table EachAnswer(const engine::ModelDescription& model,
+                         const std::vector<Answer>& answers) {
+  report::Table table = FiguresTable("each answer");
+  for (const Answer& answer : answers) {
+    const std::string& name = model.classes[static_cast<size_t>(answer.label)];
+    table.rows.push_back(
+        {absl::StrCat(name, " ", answer.leader->id, " ", answer.seed), answer.figures.values});
+  }
+  return table;
+}
+
 // Pictures of the worst seconds of the worst answers.
 void AddPictures(const engine::ModelDescription& model, const std::vector<Answer>& answers,
                  int count, report::ResultSection* section) {
@@ -233,25 +252,19 @@ std::vector<dataset::Sequence> HoldFirstPoses(const std::vector<dataset::Sequenc
   return held;
 }
 
-// The means of the figures of stillness of followers of one rate and length.
-std::vector<double> StillnessOf(const motion::Skeleton& skeleton,
-                                const std::vector<Poses>& followers, double rate) {
+// The figures of stillness of a follower.
+std::vector<double> StillnessOf(const motion::Skeleton& skeleton, const Poses& follower,
+                                double rate) {
   const body::Body body = body::FindBody(skeleton);
-  std::vector<double> speed, raised, apart, hips;
-  for (const Poses& follower : followers) {
-    const auto from = [&](double seconds) {  // a negative number: from the end
-      const int frames = follower.frame_count(), at = static_cast<int>(seconds * rate);
-      const int first = std::clamp(at < 0 ? frames + at : at, 0, frames - 1);
-      return motion::Part(follower, first, frames - first);
-    };
-    const body::StillnessFigures figures =
-        body::MeasureStillness(skeleton, body, from(kSettlingSeconds), rate);
-    speed.push_back(figures.joint_speed);
-    raised.push_back(figures.hand_over_shoulder);
-    apart.push_back(figures.feet_apart);
-    hips.push_back(body::MeasureBuild(skeleton, body, from(-kLastSeconds)).hips_over_leg);
-  }
-  return {base::Mean(speed), base::Mean(raised), base::Mean(apart), base::Mean(hips)};
+  const auto from = [&](double seconds) {  // a negative number: from the end
+    const int frames = follower.frame_count(), at = static_cast<int>(seconds * rate);
+    const int first = std::clamp(at < 0 ? frames + at : at, 0, frames - 1);
+    return motion::Part(follower, first, frames - first);
+  };
+  const body::StillnessFigures figures =
+      body::MeasureStillness(skeleton, body, from(kSettlingSeconds), rate);
+  return {figures.joint_speed, figures.hand_over_shoulder, figures.feet_apart,
+          body::MeasureBuild(skeleton, body, from(-kLastSeconds)).hips_over_leg};
 }
 
 // Followers of leaders who do not move: without a class and with each, in clips and live.
@@ -279,10 +292,16 @@ absl::StatusOr<report::Table> StillnessTable(const PlausibleArguments& arguments
       }
       DUET_TRY(auto followers,
                SynthesizeSequences(synthesizer, labelled, experiments::StartGiven::kNone));
-      table.rows.push_back(
-          {absl::StrCat(c < 0 ? "weights 0" : model.classes[static_cast<size_t>(c)],
-                        live ? ", live" : ""),
-           StillnessOf(model.skeleton, followers, model.frame_rate_hz)});
+      const std::string row = absl::StrCat(
+          c < 0 ? "weights 0" : model.classes[static_cast<size_t>(c)], live ? ", live" : "");
+      std::vector<std::vector<double>> figures;
+      for (size_t i = 0; i < followers.size(); ++i) {
+        figures.push_back(StillnessOf(model.skeleton, followers[i], model.frame_rate_hz));
+        if (arguments.each) {
+          table.rows.push_back({absl::StrCat(row, ", ", held[i].id), figures.back()});
+        }
+      }
+      table.rows.push_back({row, report::ColumnMeans(figures)});
     }
   }
   table.decimals = 3;
@@ -332,8 +351,11 @@ absl::Status AddModel(const PlausibleArguments& arguments, const std::string& na
   }
   section->tables.push_back(FiguresTable(
       absl::StrCat(name, ": followers of ", leaders.size(), " leaders"), model.classes, by_class));
-  DUET_TRY(report::Table stillness, StillnessTable(arguments, name, synthesizer, leaders));
-  section->tables.push_back(std::move(stillness));
+  if (arguments.still) {
+    DUET_TRY(report::Table stillness, StillnessTable(arguments, name, synthesizer, leaders));
+    section->tables.push_back(std::move(stillness));
+  }
+  if (arguments.each) section->tables.push_back(EachAnswer(model, answers));
   AddPictures(model, answers, arguments.worst, section);
   return absl::OkStatus();
 }
@@ -401,7 +423,10 @@ void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen) {
             "answers to picture: the worst seconds of so many of the worst (with --out)", command);
   AddNumber("--samples", &arguments->asked.samples, 1, 1000,
             "answers to each leader, each with its seed", command);
+  command->add_flag("--each", arguments->each, "a row for each answer, too");
+  command->add_flag("!--no-still", arguments->still, "leave out leaders who do not move");
   AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  command->add_flag("!--own", arguments->models.as_served, "measure the network's own answers");
   AddSamplingFlags(&arguments->asked, command);
 }
 

@@ -60,5 +60,24 @@ TEST(PlausibleCommandTest, MeasuresStillnessWithoutAndWithEachClassInClipsAndLiv
   }
 }
 
+TEST(PlausibleCommandTest, MeasuresEachAnswerAndTheNetworksOwn) {
+  const test::TemporaryFolder leaders;
+  WriteWalker(leaders / "walker.json");
+  const auto measure = [&](const std::string& flag) {
+    return test::RunForSection(AddPlausibleCommand,
+                               {"plausible", "--leaders", leaders.path().string(), "--seconds", "4",
+                                "--embedded", "--each", flag});
+  };
+  const auto served = measure("--as-served"), own = measure("--own");
+  ASSERT_THAT(served, IsOk());
+  ASSERT_THAT(own, IsOk());
+  const nlohmann::json& answers = served->at("tables").at(2);
+  EXPECT_EQ(answers.at("rows").size(), 5 * 6u);
+  EXPECT_THAT(test::RowNames(answers)[0], testing::StartsWith("kick walker.json "));
+  EXPECT_THAT(test::RowNames(served->at("tables").at(1)),
+              testing::Contains("hug, live, walker.json"));
+  EXPECT_NE(answers, own->at("tables").at(2));
+}
+
 }  // namespace
 }  // namespace duet::evaluation::program
