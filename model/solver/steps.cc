@@ -28,8 +28,9 @@ constexpr float kFarFromHip = 0.25f, kNearHip = 0.18f;
 constexpr double kStepSeconds = 0.3, kLongestSeconds = 0.7;
 // The shortest rest between two steps of a foot. Seconds.
 constexpr double kRestSeconds = 0.15;
-// A step rises by this share of its length, and at least, at most so far. Metres.
-constexpr float kLiftShare = 0.15f, kLeastLift = 0.02f, kMostLift = 0.06f;
+// A step rises by this share of its length: three of four steps of captured people rise less. A
+// higher one bends a knee that people keep straight.
+constexpr float kLiftShare = 0.08f;
 // How far the height of a standing foot may be below and above the floor. Metres.
 constexpr double kBelow = 0.005, kAbove = 0.05;
 // Steps shorter than this are none, unless the foot is raised. Metres.
@@ -90,8 +91,7 @@ class Foot {
     const float frames = static_cast<float>(s.end - s.begin);
     Vec3 place = Wanted(t) + Lerp(from, to, eased) + s.velocity * (leaving * frames);
     if (s.arches) {
-      const float arch =
-          std::min(kMostLift, kLeastLift + kLiftShare * Norm(Level(s.target - s.from)));
+      const float arch = kLiftShare * Norm(Level(s.target - s.from));
       const float base = s.from.y + (s.target.y - s.from.y) * eased;
       place.y = std::max(place.y, base + arch * 4 * u * (1 - u));
     }
