@@ -121,18 +121,6 @@ std::vector<std::string> ListModels(v1::MotionSynthesis::Stub& stub) {
   return models;
 }
 
-TEST(ServerProcessTest, SigtermEndsACheckOfTheConfiguration) {
-  TemporaryFolder folder;
-  fs::create_directories(folder / "a/1");
-  ASSERT_EQ(mkfifo((folder / "a/1/manifest.json").c_str(), 0600), 0);
-  Process server(Flags({"--check-config", "--model-repository", folder.path().string()}));
-  const int manifest = open((folder / "a/1/manifest.json").c_str(), O_WRONLY);
-  ASSERT_GE(manifest, 0);
-  server.Signal(SIGTERM);
-  EXPECT_EQ(server.Wait(), -SIGTERM);
-  close(manifest);
-}
-
 void WriteCheckpoint(const TemporaryFolder& folder, const std::string& place,
                      const std::string& manifest = "good") {
   fs::create_directories(folder / place);
@@ -340,25 +328,6 @@ TEST(ServerProcessTest, AnAccessFileThatIsTruncatedLeavesTheOldOneAndShowsEveryw
   EXPECT_EQ(server.WaitForEvent("secrets_reloaded").value("kind", ""), "access");
   EXPECT_THAT(get("/metrics"), HasSubstr("duet_secrets_last_reload_successful{kind=\"access\"} 1"));
   EXPECT_EQ(code(), grpc::StatusCode::OK);
-}
-
-TEST(ServerProcessTest, PrintConfigTellsWhereEachSettingComesFrom) {
-  setenv("DUET_SERVER_MAX_CALLS", "64", 1);
-  Process server({"--print-config", "--listen", "127.0.0.1:7"});
-  unsetenv("DUET_SERVER_MAX_CALLS");
-  EXPECT_THAT(server.Rest(),
-              AllOf(HasSubstr("listen: \"127.0.0.1:7\"  # command line\n"),
-                    HasSubstr("\nmax_calls: 64  # environment DUET_SERVER_MAX_CALLS\n"),
-                    HasSubstr("\ngrace_seconds: 30  # default\n")));
-  EXPECT_EQ(server.Wait(), 0);
-}
-
-TEST(ServerProcessTest, FailsWithoutAnythingToServe) {
-  TemporaryFolder folder;
-  Process server(Flags({"--model-repository", folder.path().string()}));
-  EXPECT_THAT(server.WaitForEvent("cannot_serve").value("message", ""),
-              HasSubstr("no model could be loaded"));
-  EXPECT_EQ(server.Wait(), 1);
 }
 
 // Whether no signal waits for the process and all of its threads sleep, so that what a signal began

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -166,16 +165,6 @@ TEST_F(LiveSessionTest, EachFrameIsAnsweredInOrder) {
   EXPECT_EQ(session_->stats().compute_seconds, 0.5 * session_->stats().windows);
 }
 
-std::vector<float> Joined(
-    const std::vector<v1::FollowerFrames>& parts,
-    const google::protobuf::RepeatedField<float>& (v1::FollowerFrames::*values)() const) {
-  std::vector<float> joined;
-  for (const v1::FollowerFrames& part : parts) {
-    joined.insert(joined.end(), (part.*values)().begin(), (part.*values)().end());
-  }
-  return joined;
-}
-
 TEST_F(LiveSessionTest, TheFirstFramesHaveTheRigAndEveryFrameItsRotations) {
   v1::LiveStart start = Start();
   start.set_reply_rotations(true);
@@ -193,51 +182,6 @@ TEST_F(LiveSessionTest, TheFirstFramesHaveTheRigAndEveryFrameItsRotations) {
     for (int i = 3; i < 4 * rig_joints; i += 4) EXPECT_GE(taken.parts[0].rotations(i), 0);
   }
   EXPECT_GT(rig_joints, kValues / 3);
-}
-
-TEST_F(LiveSessionTest, AResumedSessionHasTheSameRigAndRotations) {
-  constexpr int kAll = 90;
-  v1::LiveStart start = Start();
-  start.set_reply_rotations(true);
-  Begin(start);
-  std::vector<v1::FollowerFrames> whole;
-  for (int t = 0; t < kAll; ++t) {
-    Send(Frames(t, 1));
-    RunAll();
-    whole.push_back(Take().parts.at(0));
-  }
-  const std::vector<float> rotations = Joined(whole, &v1::FollowerFrames::rotations);
-  const std::ptrdiff_t width = 4 * whole[0].rig_size();
-  for (const int at : {1, 29, 30, 47, 60, 74}) {
-    v1::LiveStart resumed = start;
-    const int first = std::max(0, at - 2 * kRate);
-    const Message known = Frames(first, at - first);
-    *resumed.mutable_leader()->mutable_positions() = known.frames().positions();
-    resumed.mutable_leader()->set_frame_count(known.frames().frame_count());
-    v1::LiveHistory& history = *resumed.mutable_history();
-    history.set_first_frame(static_cast<uint32_t>(first));
-    history.set_follower_frame_count(static_cast<uint32_t>(at - first));
-    for (int t = first; t < at; ++t) {
-      history.mutable_follower_positions()->MergeFrom(whole[static_cast<size_t>(t)].positions());
-    }
-    *history.mutable_rig_leader_positions() = Frames(0, 1).frames().positions();
-    *history.mutable_rig_follower_positions() = whole[0].positions();
-    Begin(resumed);
-    answered_ = at;
-    std::vector<v1::FollowerFrames> rest;
-    for (int t = at; t < kAll; ++t) {
-      Send(Frames(t, 1));
-      RunAll();
-      rest.push_back(Take().parts.at(0));
-    }
-    ASSERT_EQ(rest[0].rig_size(), whole[0].rig_size()) << at;
-    for (int j = 0; j < rest[0].rig_size(); ++j) {
-      EXPECT_EQ(rest[0].rig(j).SerializeAsString(), whole[0].rig(j).SerializeAsString());
-    }
-    EXPECT_EQ(Joined(rest, &v1::FollowerFrames::rotations),
-              std::vector<float>(rotations.begin() + at * width, rotations.end()))
-        << "resumed at " << at;
-  }
 }
 
 TEST_F(LiveSessionTest, OneWindowAtATimeAndProgressIsReported) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -31,7 +30,6 @@ using test::Refusal;
 using test::Reply;
 using test::RunningService;
 using test::SampleRequest;
-using test::SamplingDescription;
 using test::TimedContext;
 
 using absl::StatusCode;
@@ -48,20 +46,6 @@ std::string Trailer(const grpc::ClientContext& context, const std::string& key) 
   const auto& trailers = context.GetServerTrailingMetadata();
   const auto found = trailers.find(key);
   return found == trailers.end() ? "" : std::string(found->second.data(), found->second.size());
-}
-
-TEST(ServiceRefusalTest, RejectionOfAMalformedRequestListsEveryField) {
-  RunningService running;
-  v1::SynthesizeRequest request = SampleRequest();
-  request.mutable_leader()->set_positions(0, std::numeric_limits<float>::quiet_NaN());
-  request.set_chunk_frames(0);
-  const Reply reply = Call(running.stub(), request);
-  EXPECT_THAT(reply.messages, IsEmpty());
-  const Refusal refusal = Decode(reply.status);
-  EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(refusal.Fields(), ElementsAre("leader.positions[0]", "chunk_frames"));
-  EXPECT_EQ(refusal.reason, "INVALID_REQUEST");
-  EXPECT_EQ(running.calls().WaitFor(1).status.code(), StatusCode::kInvalidArgument);
 }
 
 TEST(ServiceRefusalTest, LargestRejectionReachesTheClient) {
@@ -238,18 +222,6 @@ TEST(ServiceEndTest, AnExpiredCallNeverStarts) {
   while (!ExpiresInLine(seconds)) seconds *= 2;
 }
 
-TEST(ServiceEndTest, ACancelledCallNeverStarts) {
-  PuppetService service;
-  TimedContext context;
-  const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
-  service.puppet.WaitForJobs(1);
-  context.TryCancel();
-  EXPECT_EQ(ReadAll(*reader).status.error_code(), grpc::StatusCode::CANCELLED);
-  EXPECT_EQ(service.running.calls().WaitFor(1).status.code(), StatusCode::kCancelled);
-  EXPECT_FALSE(service.puppet.RunNext()) << "its window was evaluated";
-  EXPECT_EQ(service.running.admission().calls(), 0u);
-}
-
 TEST(ServiceEndTest, ACallCancelledMidwayStopsThere) {
   PuppetService service;
   TimedContext context;
@@ -276,19 +248,6 @@ TEST(ServiceEndTest, AWindowDroppedByTheSchedulerEndsTheCall) {
   const Refusal refusal = Decode(ReadAll(*reader).status);
   EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
   EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
-}
-
-TEST(ServiceEndTest, AbortAllEndsEveryCallWithTheReason) {
-  PuppetService service;
-  TimedContext first_context, second_context;
-  const auto first = service.running.stub().Synthesize(&first_context, SampleRequest());
-  const auto second = service.running.stub().Synthesize(&second_context, SampleRequest());
-  service.puppet.WaitForJobs(2);
-  service.running.service().AbortAll(absl::UnavailableError("going away"));
-  EXPECT_EQ(ReadAll(*first).status.error_code(), grpc::StatusCode::UNAVAILABLE);
-  EXPECT_EQ(ReadAll(*second).status.error_code(), grpc::StatusCode::UNAVAILABLE);
-  EXPECT_FALSE(service.puppet.RunNext());
-  EXPECT_FALSE(service.puppet.RunNext());
 }
 
 TEST(ServiceIdentityTest, KeepsTheCallersRequestIdAndTrace) {
