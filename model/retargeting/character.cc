@@ -22,6 +22,66 @@ constexpr double kSmallestLeg = 1e-3;
 
 double Rounded(double value, double step) { return std::round(value / step) * step; }
 
+// Frames, spread over a motion, in which distances are measured.
+constexpr int kCheckedFrames = 100;
+// Of the body's size.
+constexpr double kOnePlace = 0.002;
+
+class Body {
+ public:
+  Body(const motion::Skeleton& skeleton, const motion::Poses& poses)
+      : skeleton_(skeleton), poses_(poses) {}
+
+  // The mean distance of two joints; -1 if the skeleton lacks one.
+  double Distance(const std::string& a, const std::string& b) const {
+    const int from = skeleton_.Find(a), to = skeleton_.Find(b);
+    if (from < 0 || to < 0 || poses_.empty()) return -1;
+    double sum = 0;
+    const int frames = std::min(poses_.frame_count(), kCheckedFrames);
+    for (int i = 0; i < frames; ++i) {
+      const auto pose = poses_[static_cast<int>(std::int64_t{i} * poses_.frame_count() / frames)];
+      sum += static_cast<double>(motion::Distance(pose[static_cast<std::size_t>(from)],
+                                                  pose[static_cast<std::size_t>(to)]));
+    }
+    return sum / frames;
+  }
+
+  double Size() const {
+    double size = 0;
+    const std::string& root = skeleton_.joint_names[static_cast<std::size_t>(skeleton_.root)];
+    for (const std::string& joint : skeleton_.joint_names) {
+      size = std::max(size, Distance(root, joint));
+    }
+    return size;
+  }
+
+ private:
+  const motion::Skeleton& skeleton_;
+  const motion::Poses& poses_;
+};
+
+// `size`: of the body, in the unit of the poses.
+absl::Status CheckPlaces(absl::string_view source, const motion::Skeleton& skeleton,
+                         const motion::Poses& poses, const JointMap& map,
+                         const std::vector<std::string>& file_joints, double size) {
+  const Body body(skeleton, poses);
+  for (const char* name : {"hip", "shoulder"}) {
+    const std::string left = absl::StrCat("left_", name), right = absl::StrCat("right_", name);
+    const double distance = body.Distance(left, right);
+    if (distance < 0 || !(distance < kOnePlace * size)) continue;
+    const auto in_file = [&](const std::string& joint) {
+      const auto index = static_cast<std::size_t>(skeleton.Find(joint));
+      return file_joints[static_cast<std::size_t>(map.sources[index].terms[0].joint)];
+    };
+    return MendedBy(absl::InvalidArgumentError(
+                        absl::StrCat(source, ": joints: expected ", left, " and ", right,
+                                     " in two places, got ", in_file(left), " and ", in_file(right),
+                                     " in one; specify a joint map such as ", left, "=NAME")),
+                    motion::ReadingSetting::kJointMap);
+  }
+  return absl::OkStatus();
+}
+
 class ClipMaker {
  public:
   ClipMaker(const Character& character, absl::string_view source, const CharacterOptions& options)
@@ -35,6 +95,9 @@ class ClipMaker {
     if (!map.ok()) return map.status();
     const absl::StatusOr<double> scale = MetresPerUnit(map->straight);
     if (!scale.ok()) return scale.status();
+    // If positions were meant to add to offsets, the poses are points, and only the rest has a
+    // size.
+    const double leg = options_.skeleton.feet ? *scale * StraightLeg(map->straight) : 0;
     motion::Clip clip;
     clip.joint_names = options_.skeleton.joint_names;
     clip.frame_rate_hz = character_.frame_rate_hz;
@@ -46,7 +109,8 @@ class ClipMaker {
       position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
     const absl::Status body =
-        CheckBody(source_, options_.skeleton, clip.poses, *map, character_.tree.names);
+        CheckPlaces(source_, options_.skeleton, clip.poses, *map, character_.tree.names,
+                    std::max(leg, Body(options_.skeleton, clip.poses).Size()));
     if (!body.ok()) return body;
     if (options_.fit != nullptr) {
       *options_.fit = {*scale, coordinates.up_axis, *std::move(map)};
@@ -66,6 +130,11 @@ class ClipMaker {
                     motion::ReadingSetting::kMetresPerUnit);
   }
 
+  // Requires a skeleton with feet.
+  double StraightLeg(const std::vector<motion::Vec3>& straight) const {
+    return LegLength(options_.skeleton, motion::Poses(options_.skeleton.joint_count(), straight));
+  }
+
   absl::StatusOr<double> MetresPerUnit(const std::vector<motion::Vec3>& straight) {
     if (options_.metres_per_unit.has_value()) {
       ReportUnit({absl::StrCat(*options_.metres_per_unit, " m"), Origin::kGiven, ""});
@@ -76,8 +145,7 @@ class ClipMaker {
     if (!options_.skeleton.feet) {
       return UnitNeeded("expected a skeleton with feet to infer the unit, got none");
     }
-    const double length =
-        LegLength(options_.skeleton, motion::Poses(options_.skeleton.joint_count(), straight));
+    const double length = StraightLeg(straight);
     const std::string& root =
         options_.skeleton.joint_names[static_cast<size_t>(options_.skeleton.root)];
     if (const std::optional<motion::InferredUnit> unit = motion::InferUnit({length})) {
@@ -145,67 +213,10 @@ absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_vie
   return ClipMaker(character, source, options).Make();
 }
 
-namespace {
-
-// Frames, spread over a motion, in which distances are measured.
-constexpr int kCheckedFrames = 100;
-// Of the body's size.
-constexpr double kOnePlace = 0.002;
-
-class Body {
- public:
-  Body(const motion::Skeleton& skeleton, const motion::Poses& poses)
-      : skeleton_(skeleton), poses_(poses) {}
-
-  // The mean distance of two joints; -1 if the skeleton lacks one.
-  double Distance(const std::string& a, const std::string& b) const {
-    const int from = skeleton_.Find(a), to = skeleton_.Find(b);
-    if (from < 0 || to < 0 || poses_.empty()) return -1;
-    double sum = 0;
-    const int frames = std::min(poses_.frame_count(), kCheckedFrames);
-    for (int i = 0; i < frames; ++i) {
-      const auto pose = poses_[static_cast<int>(std::int64_t{i} * poses_.frame_count() / frames)];
-      sum += static_cast<double>(motion::Distance(pose[static_cast<std::size_t>(from)],
-                                                  pose[static_cast<std::size_t>(to)]));
-    }
-    return sum / frames;
-  }
-
-  double Size() const {
-    double size = 0;
-    const std::string& root = skeleton_.joint_names[static_cast<std::size_t>(skeleton_.root)];
-    for (const std::string& joint : skeleton_.joint_names) {
-      size = std::max(size, Distance(root, joint));
-    }
-    return size;
-  }
-
- private:
-  const motion::Skeleton& skeleton_;
-  const motion::Poses& poses_;
-};
-
-}  // namespace
-
 absl::Status CheckBody(absl::string_view source, const motion::Skeleton& skeleton,
                        const motion::Poses& poses, const JointMap& map,
                        const std::vector<std::string>& file_joints) {
-  const Body body(skeleton, poses);
-  for (const char* name : {"hip", "shoulder"}) {
-    const std::string left = absl::StrCat("left_", name), right = absl::StrCat("right_", name);
-    const double distance = body.Distance(left, right);
-    if (distance < 0 || !(distance < kOnePlace * body.Size())) continue;
-    const auto in_file = [&](const std::string& joint) {
-      const auto index = static_cast<std::size_t>(skeleton.Find(joint));
-      return file_joints[static_cast<std::size_t>(map.sources[index].terms[0].joint)];
-    };
-    return MendedBy(absl::InvalidArgumentError(
-                        absl::StrCat(source, ": joints: expected ", left, " and ", right,
-                                     " in two places, got ", in_file(left), " and ", in_file(right),
-                                     " in one; specify a joint map such as ", left, "=NAME")),
-                    motion::ReadingSetting::kJointMap);
-  }
-  return absl::OkStatus();
+  return CheckPlaces(source, skeleton, poses, map, file_joints, Body(skeleton, poses).Size());
 }
 
 }  // namespace duet::retargeting

@@ -98,13 +98,5 @@ TEST(Rig, BranchesKeepTheirMeanShapeAlongTheTrunk) {
   }
 }
 
-// A pelvis with a chest, whose two limbs are no legs, and a tail below.
-motion::Skeleton Hipless() {
-  motion::Skeleton skeleton;
-  skeleton.joint_names = {"pelvis", "chest", "tail", "tail_end", "arm", "hand"};
-  skeleton.bones = {{0, 1}, {0, 2}, {2, 3}, {0, 4}, {4, 5}};
-  return skeleton;
-}
-
 }  // namespace
 }  // namespace duet::retargeting
