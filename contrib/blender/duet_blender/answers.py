@@ -106,8 +106,7 @@ def show(scene, index):
     if retarget.follows(duet.target):
         yield from retarget.follow(scene, duet.target)
     duet.chosen = index
-    if not duet.own_seed:
-        duet.seed = min(int(answer.seed), _LARGEST_SEED)
+    duet.seed = min(int(answer.seed), _LARGEST_SEED)
     duet.state = ", ".join(filter(None, (f"{partner.NAME}: seed {answer.seed}", answer.pins)))
 
 

@@ -126,7 +126,7 @@ class DUET_OT_show_eight(_Asking):
 
 
 class DUET_OT_choose(_Working):
-    """Shows this answer in place of the last partner"""
+    """Shows this answer in place of the last partner, and keeps its seed for the next React"""
 
     bl_idname = "duet.choose"
     bl_label = "Choose answer"
@@ -139,6 +139,7 @@ class DUET_OT_choose(_Working):
 
     def work(self, context):
         yield from answers.show(context.scene, self.index)
+        context.scene.duet.own_seed = True  # show() has shown the seed in the field
         _push_undo(self.bl_label)
 
 

@@ -57,6 +57,7 @@ class BlenderShapeTest(unittest.TestCase):
     def test_chosen_answer_replaces_the_partner(self):
         for shown, index in zip(self.state["shown"], (0, 3), strict=True):
             self.assertEqual(shown["chosen"], index)
+            self.assertEqual(shown["kept"], [True, self.state["seeds"][index]])
             self.assertIn(f"seed {self.state['seeds'][index]}", shown["state"])
             self.assertEqual(shown["followers"], 2)  # the leader's and the partner's armature
             self.assert_near(shown["hand"], shown["expected"], 1e-3)

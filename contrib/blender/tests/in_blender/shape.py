@@ -70,7 +70,7 @@ state["shown"] = []
 for index in (0, 3):
     assert bpy.ops.duet.choose(index=index) == {"FINISHED"}
     state["shown"].append({
-        "chosen": settings.chosen, "state": settings.state,
+        "chosen": settings.chosen, "state": settings.state, "kept": [settings.own_seed, settings.seed],
         "followers": sum(thing.type == "ARMATURE" for thing in scene.objects),
         "hand": place(follower(), "left_hand", 40),
         "expected": answered(settings.answers[index], "left_hand", 40)})
