@@ -97,13 +97,6 @@ motion::Poses OneMoves(int frames) {
   return poses;
 }
 
-// To and fro by 1 cm every frame: what noise does.
-motion::Poses Shaking(int frames) {
-  motion::Poses poses(frames, 1);
-  for (int t = 0; t < frames; ++t) poses.at(t, 0) = {t % 2 == 0 ? 0.005f : -0.005f, 0, 0};
-  return poses;
-}
-
 TEST(JointSpeedTest, IsTheMeanOverJointsAndSteps) {
   EXPECT_NEAR(JointSpeed(OneMoves(5), 10), 0.5, 1e-6);
   EXPECT_NEAR(JointSpeed(OneMoves(5), 30), 1.5, 1e-6);
