@@ -13,6 +13,7 @@ STUDIES = tools.SOURCE / "contrib" / "studies"
 os.environ.update(DUET_PROGRAM=str(tools.PROGRAMS / "duet"), PYTHONPATH=str(tools.SOURCE / "client" / "python"))
 sys.path[:0] = [str(STUDIES), str(tools.SOURCE / "client" / "python")]
 import people  # noqa: E402
+import solver_numbers  # noqa: E402
 
 NAMES = ("neck", "left_hip", "right_hip", "left_hand", "right_hand")
 
@@ -45,6 +46,21 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(people.matched_turns(once, once), 1)
         back = people.turns(leader, person(1, -around), NAMES, 30)
         self.assertEqual(people.matched_turns(once, back), 0)
+
+
+class SolverNumbersTest(unittest.TestCase):
+    def test_constants_are_read_from_the_environment(self):
+        text, numbers = solver_numbers.open_numbers(
+            "constexpr double kFast = 0.6,\n                 kSlow = 2 * kFast;\nconstexpr Vec3 kUp{0, 1, 0};\n", "steps")
+        self.assertEqual(numbers, {"steps.kFast": "0.6", "steps.kSlow": "2 * kFast"})
+        self.assertIn('kSlow = static_cast<double>(StudiedNumber("steps.kSlow=", 2 * kFast));', text)
+        self.assertIn("constexpr Vec3 kUp", text)
+
+    def test_an_interval_is_of_the_mean_difference(self):
+        low, high = solver_numbers.interval(np.tile([[1.0], [3.0]], (20, 1)), np.random.default_rng(0))
+        self.assertLess(low[0], 2)
+        self.assertGreater(high[0], 2)
+        self.assertGreater(low[0], 1.5)
 
 
 class TablesTest(tools.ServedTest):
