@@ -55,7 +55,7 @@ def commands(build, target):
 
 
 def build_program(build, folder):
-    """A duet-eval whose solver reads its numbers from the environment, unless the folder has one. Returns the numbers."""
+    """A duet-eval whose solver reads its numbers from the environment, unless there is one. Returns the numbers."""
     made = (folder / "duet-eval").exists()
     (folder / "numbers.h").write_text(HEADER, encoding="utf-8")
     compiler = next(line for line in commands(build, "model/solver/libduet_solver.a") if "/model/solver/" in line)
