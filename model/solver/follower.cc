@@ -121,8 +121,7 @@ void FollowerSolver::Solve(const Situation& situation, const BodyModel& person,
     for (int t = given; t < frames; ++t) person.Fit((*follower)[t]);
   };
   fit();
-  Stance stance = MeasureStance(person, *follower);
-  StretchLegs(person, frame_rate_hz_, &stance);
+  const Stretches stretches = MeasureStretches(body_.legs, *follower);
   trunk_->LimitTwist(frame_rate_hz_, given, follower);
   fit();
   trunk_->LimitLean(frame_rate_hz_, given, OwnLean(situation), follower);
@@ -130,7 +129,7 @@ void FollowerSolver::Solve(const Situation& situation, const BodyModel& person,
   const std::vector<motion::Poses> bends = SmoothBends(*follower);
   const PinnedBody pinned(skeleton_, body_, situation.pins, frame_rate_hz_, given, *follower);
   if (!situation.pins.empty()) pinned.Approach(follower);
-  PlaceFeet(situation, person, std::move(stance), follower);
+  PlaceFeet(situation, stretches, follower);
   partner_->PlaceHands(situation.leader, situation.rules, frame_rate_hz_, given, follower);
   BendLimbs(bends, given, follower);
   if (!situation.pins.empty()) pinned.Place(follower);
@@ -189,18 +188,20 @@ void FollowerSolver::StandOnFloor(double floor, int given, motion::Poses* follow
   }
 }
 
-void FollowerSolver::PlaceFeet(const Situation& situation, const BodyModel& person, Stance stance,
+void FollowerSolver::PlaceFeet(const Situation& situation, const Stretches& stretches,
                                motion::Poses* follower) const {
   const int given = situation.given.frame_count(), frames = follower->frame_count();
   const double floor = FloorOf(situation);
   StandOnFloor(floor, given, follower);
-  stance.feet = MeasureStance(person, *follower).feet;
-  std::array<FootPath, 2> hips;
+  std::array<FootPath, 2> feet, hips;
   for (std::size_t leg = 0; leg < 2; ++leg) {
-    for (int t = 0; t < frames; ++t) hips[leg].push_back(follower->at(t, body_.legs[leg].upper));
+    for (int t = 0; t < frames; ++t) {
+      feet[leg].push_back(follower->at(t, body_.legs[leg].end));
+      hips[leg].push_back(follower->at(t, body_.legs[leg].upper));
+    }
   }
-  const Footing footing = PlanSteps(stance.feet, hips, given, frame_rate_hz_, floor);
-  StandOnFeet(person, footing, stance, frame_rate_hz_, given, follower);
+  const Footing footing = PlanSteps(feet, hips, given, frame_rate_hz_, floor);
+  KeepStature(body_.legs, footing, stretches, frame_rate_hz_, given, follower);
   for (std::size_t leg = 0; leg < 2; ++leg) {
     const body::Limb& limb = body_.legs[leg];
     for (int t = given; t < frames; ++t) {

@@ -64,7 +64,7 @@ class FollowerSolver {
  private:
   // Lowers a follower that floats, and raises one that sinks, for longer than a jump.
   void StandOnFloor(double floor, int given, motion::Poses* follower) const;
-  void PlaceFeet(const Situation& situation, const BodyModel& person, Stance stance,
+  void PlaceFeet(const Situation& situation, const Stretches& stretches,
                  motion::Poses* follower) const;
   // Where knees and elbows point: legs, then arms, each [frames, 1].
   std::vector<motion::Poses> SmoothBends(const motion::Poses& follower) const;
