@@ -24,7 +24,7 @@ def every_help():
         text = help_of(program)
         yield (program,), text
         _, _, commands = text.partition("Subcommands:\n")
-        for command in re.findall(r"^  (\w+)", commands, re.MULTILINE):
+        for command in re.findall(r"^  (\w+)", commands.partition("\n\n")[0], re.MULTILINE):
             yield (program, command), help_of(program, command)
 
 
