@@ -67,10 +67,9 @@ synthesize() {
   echo
 }
 
-# A dance of 30 s: the lead of the sample comes, asks for two turns, and leaves. At 180 beats a minute, a beat has ten
-# frames.
+# A dance of 30 s: the lead of the sample comes, asks for two turns, and leaves.
 dance() {
-  duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --candidates 4 --seed 1 \
+  duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --candidates 4 \
     --keyframe 0:apart=1 --keyframe 50:apart=1 --keyframe 60:approach=1 --keyframe 110:approach=1 \
     --keyframe 120:basic=1 --keyframe 270:basic=1 --keyframe 280:follower_turn=1 --keyframe 390:follower_turn=1 \
     --keyframe 400:basic=1 --keyframe 510:basic=1 --keyframe 520:cross_body=1 --keyframe 670:cross_body=1 \
