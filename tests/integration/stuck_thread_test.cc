@@ -59,6 +59,8 @@ TEST(StuckThreadTest, WorkersThatNeverReturnEndTheProcess) {
       Flags({"--workers", "1", "--self-check-seconds", "0.1", "--watchdog-seconds", "15"}));
   const json serving = server.WaitForEvent("serving");
   const BlockingCall call(serving, "kick");
+  // A second call that came before would be in the same batch, and no window would wait.
+  ASSERT_FALSE(server.WaitForEvent("blocking").is_null());
   const BlockingCall behind(serving, "kick");
   EXPECT_THAT(server.WaitForEvent("self_check_failed").value("message", ""),
               HasSubstr("no worker finishes a batch"));
