@@ -6,6 +6,7 @@ Every take becomes an animation of the glTF at the file's rate. Of a glTF, the F
 
 import os
 import pathlib
+import shutil
 import sys
 
 try:
@@ -47,16 +48,23 @@ def to_fbx(source, out):
     bpy.ops.export_scene.fbx(filepath=out, add_leaf_bones=False, bake_anim=True, bake_anim_simplify_factor=0)
 
 
+def run_in_blender(arguments):
+    """Goes on with this file in Blender; does not return."""
+    blender = shutil.which("blender")
+    if blender is None:
+        sys.exit("duet_fbx: expected the program blender, which is not installed; install Debian's package blender")
+    # Blender takes its modules, numpy among them, from where the first python3 of PATH is: a pyenv's has none.
+    os.environ["PATH"] = os.pathsep.join([os.path.dirname(blender), os.environ["PATH"]])
+    os.execv(blender, [blender, "--background", "--factory-startup", "--python-exit-code", "1", "--python", __file__,
+                       "--", *arguments])
+
+
 def main(arguments):
     kinds = [pathlib.Path(name).suffix.lower() for name in arguments]
     if kinds not in ([".fbx", ".glb"], [".glb", ".fbx"]):
         sys.exit(USAGE)
     if bpy is None:
-        blender = ["blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python", __file__, "--"]
-        try:
-            os.execvp(blender[0], [*blender, *arguments])
-        except FileNotFoundError:
-            sys.exit("duet_fbx: expected the program blender, which is not installed; install Debian's package blender")
+        run_in_blender(arguments)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     if "bool" not in numpy.__dict__:  # Debian 12's glTF add-on uses it, and its numpy no longer has it
         numpy.bool = bool
