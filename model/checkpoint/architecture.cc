@@ -268,7 +268,6 @@ void SetArchitecture(const Architecture& architecture, Manifest* manifest) {
 }
 
 int StartFeatureCount(const motion::Skeleton& skeleton) {
-  constexpr int kCoordinates = 3;
   constexpr int kFlags = 2;  // root known, pose known
   return kCoordinates + kCoordinates * skeleton.joint_count() + kFlags;
 }
