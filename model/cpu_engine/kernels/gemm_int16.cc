@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -12,8 +13,8 @@
 namespace duet::cpu_engine::kernels {
 namespace {
 
-constexpr float kMost = 32767;
-// Below this a row counts as zeros, whose unit would not be finite.
+constexpr float kMost = std::numeric_limits<int16_t>::max();
+// Below this norm a row counts as zeros: the inverse of its unit would not be finite.
 constexpr float kLeastNorm = 1e-30f;
 
 // Pairs of inputs of a block of x: the rounded rows of a tile stay in the first-level cache.
