@@ -68,6 +68,11 @@ TEST(ReadConfigFileTest, ErrorNamesTheFile) {
   EXPECT_THAT(Read(folder / "bad.json"), StatusIs(kInvalidArgument, HasSubstr("bad.json")));
 }
 
+TEST(ParseConfigTextTest, RejectsASettingThatIsGone) {
+  EXPECT_THAT(ParseConfigText("otlp_endpoint: \"collector\"", /*json=*/false),
+              StatusIs(kInvalidArgument, HasSubstr("otlp_endpoint")));
+}
+
 TEST(ReadConfigFileTest, ReportsEveryMistakeWithItsPlace) {
   TemporaryFolder folder;
   WriteTestFile(folder / "bad.json", "{\"workers\": -2,\n  \"max_call\": 7, \"maxCalls\": 9}");
