@@ -4,9 +4,9 @@
     contrib/everyday/measure.py --data solved --server localhost:50051 --model everyday
 
 DATA is the data set of the training (make_everyday.py, solved). Answers each left-out leader with its
-class, with and without the follower's first pose, and live. Beside the model: the captured follower,
-its first pose held, the mean follower of the class, and the training follower whose leader moves most
-alike, chosen anew every two seconds. --films writes a film strip of each answer (needs python3-pil).
+class: without a start, with the follower's first place, with its first pose, and live. Beside the model:
+the captured follower, its first pose held, the mean follower of the class, and the training follower
+whose leader moves most alike, chosen anew every two seconds. --films writes a film strip of each answer (needs python3-pil).
 Needs the Python package duet_motion. Columns: everyday/figures.py.
 """
 
@@ -67,17 +67,17 @@ class Model:
 def _answers(model, pair, train, rate):
     """{row: [followers]} of a left-out pair."""
     leader, label, first = pair.leader, {pair.label: 1}, pair.follower[0]
-    return {
+    rows = {
         "captured": [pair.follower],
         "first pose held": [numpy.repeat(first[None], len(leader), axis=0)],
         "class mean": [baselines.class_mean(pair, train)],
-        "nearest neighbour": [baselines.nearest(pair, train, rate)],
-        "model": [model.clip(leader, label, seed) for seed in SEEDS],
-        "nearest neighbour+pose": [baselines.nearest(pair, train, rate, knows_pose=True)],
-        "model+pose": [model.clip(leader, label, seed, first) for seed in SEEDS],
-        "model+pose, variety 0": [model.clip(leader, label, 0, first, variety=0)],
-        "model+pose, live": [model.live(leader, label, seed, first) for seed in SEEDS[:1]],
     }
+    for suffix, told, known in (("", None, None), ("+place", first[0], first[:1]), ("+pose", first, first)):
+        rows["nearest neighbour" + suffix] = [baselines.nearest(pair, train, rate, known)]
+        rows["model" + suffix] = [model.clip(leader, label, seed, told) for seed in SEEDS]
+        rows[f"model{suffix}, variety 0"] = [model.clip(leader, label, 0, told, variety=0)]
+    rows["model+pose, live"] = [model.live(leader, label, seed, first) for seed in SEEDS[:1]]
+    return rows
 
 
 def _still_figures(model, pairs, joints, rate):

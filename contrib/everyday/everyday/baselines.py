@@ -100,7 +100,7 @@ def _candidates(pairs):
 
 
 def _nearest_window(leader, hips, candidates, known):
-    """`known`: the follower's pose in the first frame, or None."""
+    """`known`: the follower's first joints in the first frame, [joints, 3], or None."""
     frames, best = len(leader), (numpy.inf, None)
     anchor = _anchor(leader[0], hips)
     wanted = _local(leader, anchor)
@@ -111,7 +111,7 @@ def _nearest_window(leader, hips, candidates, known):
             own = _anchor(led[first], hips)
             cost = numpy.linalg.norm(_local(led[first:first + frames], own) - wanted, axis=-1).mean()
             if known is not None:
-                away = _local(followed[first], own) - _local(known, anchor)
+                away = _local(followed[first, :len(known)], own) - _local(known, anchor)
                 cost += numpy.linalg.norm(away, axis=-1).mean()
             if cost < best[0]:
                 best = cost, _local(followed[first:first + frames], own)
@@ -119,18 +119,18 @@ def _nearest_window(leader, hips, candidates, known):
     return answer if known is None else answer + (known[0] - answer[0, 0]) * [1, 0, 1]
 
 
-def nearest(pair, train, rate, knows_pose=False):
+def nearest(pair, train, rate, start=None):
     """The training follower whose leader moves most alike, chosen anew every WINDOW_SECONDS.
 
-    With `knows_pose` also its first pose counts, and it begins at the captured follower's place, or
-    where the window before ended.
+    With `start`, the root or the pose of the captured follower's first frame ([1 or joints, 3]), it
+    also counts where the follower begins, and it begins there, or where the window before ended.
     """
     candidates = list(_candidates([one for one in train if one.label == pair.label]))
     count = max(1, round(len(pair.leader) / (WINDOW_SECONDS * rate)))
-    known, parts = pair.follower[0] if knows_pose else None, []
+    known, parts = start, []
     for part in numpy.array_split(pair.leader, count):
         parts.append(_nearest_window(part, pair.hips, candidates, known))
-        known = 2 * parts[-1][-1] - parts[-1][-2] if knows_pose else None
+        known = None if start is None else 2 * parts[-1][-1] - parts[-1][-2]
     return numpy.concatenate(parts)
 
 
