@@ -26,8 +26,8 @@ LEADERS = ("walk", "turn", "sit", "stand", "talk", "dance", "exercise", "pick", 
 LEADER_SECONDS = (2.0, 12.0)
 # Of the second run: of the staged pairs, one in so many, and their first seconds. A captured trial is
 # written several times if it is too short for so many windows of the training (2 s, every .5 s).
-STAGED_PART, STAGED_SECONDS = 3, 4.0
-FEWEST_WINDOWS, WINDOW_SECONDS, STRIDE_SECONDS = 8, 2.0, 0.5
+STAGED_PART, STAGED_SECONDS = 4, 4.0
+FEWEST_WINDOWS, WINDOW_SECONDS, STRIDE_SECONDS = 16, 2.0, 0.5
 
 
 def _print_summary(title, pairs):

@@ -6,8 +6,6 @@ import json
 CLASSES = {
     "meet_hands": {"symmetric": True, "touches": True},
     "pull": {"touches": True},
-    "talk": {"symmetric": True},
-    "comfort": {"touches": True},
     "walk": {"symmetric": True, "touches": True},
     "mirror": {"symmetric": True},
 }

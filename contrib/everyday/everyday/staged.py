@@ -1,7 +1,7 @@
 """Pairs staged from captures of single people, for a first run of the training.
 
 They show how one person moves, not how two people react: walkers get a second walker beside them,
-dancers their mirror image, and talkers another talker in front of them.
+dancers their mirror image, and who reaches out somebody who reaches out to the same place.
 """
 
 import numpy
@@ -10,15 +10,21 @@ from everyday.captures import FRAME_RATE_HZ, Pair, resample
 
 BESIDE_METRES = (0.6, 0.85)     # between two people who walk side by side
 MIRROR_METRES = (0.6, 0.85)     # from a person to the plane of the mirror
-FACING_METRES = (0.95, 1.35)    # between two people who talk
+HANDS_METRES = (0.02, 0.1)      # between two hands that meet
 LATE_FRAMES = 3                 # the second person of a walk or a mirror is late by at most this
 NEAR_METRES = 0.5               # a mirrored person stays this near its first place
+REACH_METRES = 0.45             # a hand this far before the hips is offered
+REACH_HEIGHTS = (-0.05, 0.8)    # of an offered hand above the hips, metres
+REACH_ASIDE_METRES = 0.3        # an offered hand is this near the middle of the body
+STANDING_METRES = 0.75          # the hips of a person who stands are higher
+APART_METRES = 0.55             # the hips of two people whose hands meet stay this far apart
+BEFORE_SECONDS, AFTER_SECONDS = (1.0, 2.0), (0.6, 1.4)  # of a stretch, around the meeting of hands
 SHORTEST_SECONDS = 2.0
 
 # The column `class` of the table of single captures, and what becomes of it.
 WALKS = ("walk", "turn")
 MIRRORED = ("dance", "exercise", "martial", "stand", "jump", "talk")
-TALKS = ("talk", "stand")
+REACHES = ("talk", "stand", "pick", "throw", "exercise")
 
 
 def _yaw(pose, joints):
@@ -78,13 +84,41 @@ def mirror(positions, joints, random):
     return _late(leader, image, random)
 
 
-def facing(first, second, joints, random):
-    """Two people who face each other, as long as the shorter one: (leader, follower)."""
-    count = min(len(first), len(second))
-    leader, follower = first[:count], second[:count]
-    leader = _facing(leader, joints, random.normal(0, 0.15))
-    follower = _facing(follower, joints, numpy.pi + random.normal(0, 0.15))
-    return leader, follower + [0, 0, random.uniform(*FACING_METRES)]
+def _reach(positions, joints, hand):
+    """How far an offered hand is before the hips: [frames], metres; 0 where it is not offered."""
+    yaw = numpy.array([_yaw(pose, joints) for pose in positions])
+    way = positions[:, joints.index(hand)] - positions[:, 0]
+    ahead = way[:, 0] * numpy.sin(yaw) + way[:, 2] * numpy.cos(yaw)
+    aside = way[:, 0] * numpy.cos(yaw) - way[:, 2] * numpy.sin(yaw)
+    is_offered = ((ahead > REACH_METRES) & (numpy.abs(aside) < REACH_ASIDE_METRES)
+                  & (REACH_HEIGHTS[0] < way[:, 1]) & (way[:, 1] < REACH_HEIGHTS[1])
+                  & (positions[:, 0, 1] > STANDING_METRES))
+    return ahead * is_offered
+
+
+def meetings(positions, joints, random):
+    """Two people whose hands meet where one of them reaches farthest: [(leader, follower)].
+
+    The follower is the leader, turned by half a turn about the place where the hands meet.
+    """
+    found = []
+    for hand in ("RHand", "LHand"):
+        reach = _reach(positions, joints, hand)
+        while reach.any():
+            at = int(reach.argmax())
+            seconds = random.uniform(*BEFORE_SECONDS), random.uniform(*AFTER_SECONDS)
+            before, after = (round(one * FRAME_RATE_HZ) for one in seconds)
+            reach[max(0, at - before - after):at + before + after] = 0
+            first = max(0, at - before)
+            leader = positions[first:at + after]
+            yaw = _yaw(positions[at], joints)
+            ahead = numpy.array([numpy.sin(yaw), 0, numpy.cos(yaw)])
+            place = positions[at, joints.index(hand)] + ahead * random.uniform(*HANDS_METRES) / 2
+            follower = _turned(leader - place * [1, 0, 1], numpy.pi) + place * [1, 0, 1]
+            apart = numpy.linalg.norm((leader - follower)[:, 0] * [1, 0, 1], axis=1)
+            if apart.min() > APART_METRES:
+                found.append(_late(leader, follower, random))
+    return found
 
 
 def pairs(archive, classes, seed=0):
@@ -100,13 +134,12 @@ def pairs(archive, classes, seed=0):
             seconds = len(people[0]) / FRAME_RATE_HZ
             found.append(Pair(f"{label}_{key}", people, 0, ((label, 0, seconds),), (key,)))
 
-    talkers = [key for key in motions if classes[key] in TALKS]
     for key, motion in motions.items():
         if classes[key] in WALKS:
             add(key, "walk", beside(motion, archive.joints, random))
         if classes[key] in MIRRORED:
             add(key, "mirror", mirror(motion, archive.joints, random))
-        if classes[key] in TALKS and len(talkers) > 1:
-            other = motions[random.choice([one for one in talkers if one != key])]
-            add(key, "talk", facing(motion, other, archive.joints, random))
+        if classes[key] in REACHES:
+            for number, people in enumerate(meetings(motion, archive.joints, random), start=1):
+                add(f"{key}_{number}", "meet_hands", people)
     return found

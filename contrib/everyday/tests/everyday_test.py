@@ -49,24 +49,24 @@ class CapturesTest(unittest.TestCase):
         return captures.pairs(people, {"18_01": (1, left_out, spans)}, glitches or {})
 
     def test_a_pair_begins_and_ends_with_its_classes(self):
-        pair, = self.pairs([("talk", 1.0, 3.0), ("walk", 2.0, 4.0)])
+        pair, = self.pairs([("pull", 1.0, 3.0), ("walk", 2.0, 4.0)])
         self.assertEqual((pair.name, pair.leader, pair.subjects), ("18_01", 1, ("18_01",)))
-        self.assertEqual(pair.spans, (("talk", 0, 2), ("walk", 1, 3)))
+        self.assertEqual(pair.spans, (("pull", 0, 2), ("walk", 1, 3)))
         self.assertEqual([len(one) for one in pair.people], [90, 90])
         height = pair.people[0][0, JOINTS.index("RHand"), 1]
         self.assertAlmostEqual(height, 1.1 + .5 * 60 / 299, delta=.002)
 
     def test_frames_with_glitches_are_left_out(self):
-        first, second = self.pairs([("talk", 0, 5)], {"b_19_01": [(100, 120)]})
+        first, second = self.pairs([("pull", 0, 5)], {"b_19_01": [(100, 120)]})
         self.assertEqual((first.name, second.name), ("18_01", "18_01_2"))
         self.assertAlmostEqual(first.seconds, 100 / 60, delta=.05)
         self.assertAlmostEqual(second.seconds, 179 / 60, delta=.05)
 
     def test_short_stretches_are_dropped(self):
-        self.assertEqual(self.pairs([("talk", 0, 0.9)]), [])
+        self.assertEqual(self.pairs([("pull", 0, 0.9)]), [])
 
     def test_a_left_out_trial_has_a_second_subject(self):
-        self.assertEqual(self.pairs([("talk", 0, 5)], left_out=True)[0].subjects,
+        self.assertEqual(self.pairs([("pull", 0, 5)], left_out=True)[0].subjects,
                          ("18_01", captures.LEFT_OUT))
 
     def test_a_missing_or_shorter_partner_is_named(self):
@@ -74,7 +74,7 @@ class CapturesTest(unittest.TestCase):
                                  ({"b_19_01": person(5)}, "b_19_01: expected 300 frames")):
             with self.subTest(message), self.assertRaisesRegex(captures.CaptureError, message):
                 captures.pairs(archive(a_18_01=person(300), **partner),
-                               {"18_01": (0, False, [("talk", 0, 5)])}, {})
+                               {"18_01": (0, False, [("pull", 0, 5)])}, {})
 
     def test_the_stretches_name_known_classes(self):
         trials = captures.read_stretches(make_everyday.STRETCHES)
@@ -108,11 +108,24 @@ class StagedTest(unittest.TestCase):
             self.assertGreater(ahead * (pose[JOINTS.index("LToe")] - pose[JOINTS.index("LAnkle")])[2], 0)
         self.assertIsNone(staged.mirror(person(90, speed=.03), JOINTS, self.random))
 
-    def test_talkers_face_each_other(self):
-        leader, follower = staged.facing(person(90), person(60), JOINTS, self.random)
-        self.assertEqual((len(leader), len(follower)), (60, 60))
-        distance = follower[0, 0, 2] - leader[0, 0, 2]
-        self.assertTrue(staged.FACING_METRES[0] <= distance <= staged.FACING_METRES[1])
+    def test_hands_meet_where_one_person_reaches_farthest(self):
+        leader = person(120)
+        hand = JOINTS.index("RHand")
+        leader[:, hand, 2] += .3 * numpy.sin(numpy.linspace(0, numpy.pi, 120))
+        (first, second), = staged.meetings(leader, JOINTS, self.random)
+        apart = numpy.linalg.norm((first - second)[:, hand], axis=1)
+        # The second person is late by some frames.
+        self.assertLess(apart.min(), staged.HANDS_METRES[1] + .02)
+        self.assertGreater(apart.max(), .2)
+        hips = numpy.linalg.norm((first - second)[:, 0], axis=1)
+        self.assertGreater(hips.min(), staged.APART_METRES)
+
+    def test_a_hand_that_is_not_offered_meets_none(self):
+        for change in ([0, 1.2, .3], [-.6, 0, .3], [0, 0, -.2]):  # overhead, aside, near the body
+            with self.subTest(change):
+                leader = person(120)
+                leader[:, JOINTS.index("RHand")] = leader[0, JOINTS.index("RHand")] + change
+                self.assertEqual(staged.meetings(leader, JOINTS, self.random), [])
 
 
 @unittest.skipUnless(HAS_NUMPY, "needs python3-numpy")
@@ -174,7 +187,7 @@ class MakeEverydayTest(unittest.TestCase):
     def make(self, **changed):
         pair = {"a_18_01": person(150), "b_19_01": person(150), **changed}
         (self.folder / "stretches.tsv").write_text(
-            "trial\tleader\tclass\tfrom_seconds\tto_seconds\tleft_out\n18_01\ta\ttalk\t0\t2.4\tno\n")
+            "trial\tleader\tclass\tfrom_seconds\tto_seconds\tleft_out\n18_01\ta\tpull\t0\t2.4\tno\n")
         (self.folder / "single.tsv").write_text(
             "key\tclass\tpair_trial\ns_02_01\twalk\t\ns_18_01\ttalk\tyes\n")
         output = io.StringIO()
@@ -190,14 +203,14 @@ class MakeEverydayTest(unittest.TestCase):
         code, output = self.make()
         self.assertEqual(code, 0, output)
         for name, pairs in (("first", ["18_01", "walk_s_02_01"]),
-                            ("second", ["18_01", *(f"18_01_copy{i}" for i in range(2, 9)),
+                            ("second", ["18_01", *(f"18_01_copy{i}" for i in range(2, 17)),
                                         "walk_s_02_01"])):
             files = sorted((self.out / name / "pairs").iterdir())
-            self.assertEqual([file.stem for file in files], pairs)
+            self.assertEqual([file.stem for file in files], sorted(pairs))
             lines = files[0].read_text().splitlines()
             self.assertEqual(len(lines), 72)
             self.assertEqual(len(lines[0].split(",")), 1 + 2 * 22 * 3)
-        self.assertIn("pairs/18_01.txt\ttalk\t0.000\t2.400",
+        self.assertIn("pairs/18_01.txt\tpull\t0.000\t2.400",
                       (self.out / "second/labels.tsv").read_text())
         self.assertIn("pairs/18_01.txt\tleft\t18_01", (self.out / "first/index.tsv").read_text())
         layout = json.loads((self.out / "first/dataset.json").read_text())
