@@ -72,7 +72,6 @@ class MetricsTest(unittest.TestCase):
     def test_queried_metrics_exist(self):
         asked = set()
         for file in ("prometheus/rules.yml", "grafana/duet.json",
-                     "kubernetes/components/scale_by_adapter/adapter_rules.yaml",
                      "kubernetes/components/scale_by_keda/scaled_object.yaml"):
             text = (tools.SOURCE / "deploy" / file).read_text(encoding="utf-8")
             text = re.sub(r"^\s*-? *(name|as): .*$", "", text, flags=re.MULTILINE)
@@ -84,17 +83,10 @@ class MetricsTest(unittest.TestCase):
         self.assertEqual(asked - self.told(), {
             "duet_refusals_total", "duet_tls_certificate_expiry_timestamp_seconds"})
 
-    def test_autoscalers_count_the_queue_and_live_sessions(self):
-        components = tools.SOURCE / "deploy/kubernetes/components"
-        adapter, autoscaler, keda = (
-            (components / file).read_text(encoding="utf-8")
-            for file in ("scale_by_adapter/adapter_rules.yaml", "scale_by_adapter/autoscaler.yaml",
-                         "scale_by_keda/scaled_object.yaml"))
-        provided = re.findall(r'as: "(\w+)"', adapter)
-        self.assertEqual(re.findall(r"name: (duet_\w+)", autoscaler), provided)
-        for text in (adapter, keda):
-            for metric in ("duet_queued_windows", "duet_places_in_use", "duet_max_calls"):
-                self.assertIn(metric + "{", text)
+    def test_the_autoscaler_counts_the_queue_and_live_sessions(self):
+        text = (tools.SOURCE / "deploy/kubernetes/components/scale_by_keda/scaled_object.yaml").read_text(encoding="utf-8")
+        for metric in ("duet_queued_windows", "duet_places_in_use", "duet_max_calls"):
+            self.assertIn(metric + "{", text)
 
     def test_every_metric_is_in_the_document(self):
         told = self.told()
