@@ -6,11 +6,10 @@
     contrib/salsa/make_salsa.py --cmu folder --duet build/release/bin/duet --out salsa
 
 CMU is a folder with files of the CMU motion capture database: 60.asf, 60_01.amc, ... (the lead) and
-61.asf, 61_01.amc, ... (the follower). The program duet reads them. TAKES holds `lead_NN` and `follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`,
-`parents` and `fps`. GLITCHES lists frames to leave out: PERSON_NN, a tab, FIRST-LAST,... below a
-heading. --leads writes a second data set, in which the lead answers a standing person, to train a
-generator of leads, and that person as a leader, standing.json. --sheets writes a contact sheet of
-every class (needs python3-matplotlib).
+61.asf, 61_01.amc, ... (the follower). The program duet reads them. TAKES holds `lead_NN` and
+`follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`, `parents` and `fps`. GLITCHES
+lists frames to leave out: PERSON_NN, a tab, FIRST-LAST,... below a heading. --sheets writes a
+contact sheet of every class (needs python3-matplotlib).
 """
 
 import argparse
@@ -20,9 +19,7 @@ from pathlib import Path
 
 import numpy
 
-from salsa import cmu, dataset_folder, moves, standing, takes
-
-STANDING_SECONDS = 30
+from salsa import cmu, dataset_folder, moves, takes
 
 
 def _print_summary(prepared):
@@ -66,12 +63,10 @@ def main(arguments=None):
     parser.add_argument("--duet", default="duet", metavar="PROGRAM", help="reads --cmu")
     parser.add_argument("--glitches", type=Path, metavar="FILE.tsv")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new folder")
-    parser.add_argument("--leads", type=Path, metavar="DIR", help="a new folder")
     parser.add_argument("--sheets", type=Path, metavar="DIR")
     options = parser.parse_args(arguments)
-    for flag, folder in (("--out", options.out), ("--leads", options.leads)):
-        if folder and folder.exists():
-            parser.error(f"{flag}: expected a new folder, got {folder}, which exists")
+    if options.out.exists():
+        parser.error(f"--out: expected a new folder, got {options.out}, which exists")
     try:
         glitches = takes.read_glitches(options.glitches) if options.glitches else {}
         recorded, parents = _read(options)
@@ -85,11 +80,6 @@ def main(arguments=None):
         return 1
     dataset_folder.write(prepared, parents, options.out)
     _print_summary(prepared)
-    if options.leads:
-        dataset_folder.write(prepared, parents, options.leads, "salsa_lead",
-                             lambda take: standing.leads(take, parents))
-        standing.write_motion(prepared[0], parents, STANDING_SECONDS,
-                              options.leads / "standing.json")
     if options.sheets:
         _write_sheets(prepared, parents, options.sheets)
     return 0

@@ -23,11 +23,11 @@ def _parts():
                       for limb, joints in _LIMBS.items() for side in _SIDES]
 
 
-def layout(joints, parents, frame_rate_hz, name="salsa"):
+def layout(joints, parents, frame_rate_hz):
     """The content of dataset.json. `parents`: the index of each joint's parent, -1 for the root."""
     names = [joint_name(joint) for joint in joints]
     return {
-        "name": name,
+        "name": "salsa",
         "frame_rate_hz": frame_rate_hz,
         "unit": "metres",
         "up_axis": "y-up",
@@ -54,19 +54,16 @@ def _sequence(take):
     return "".join(lines)
 
 
-def write(takes, parents, out, name="salsa", staged=lambda take: take):
-    """Writes dataset.json, index.tsv, labels.tsv and takes/NN.txt to the new folder `out`.
-
-    The classes are those of the takes; the people are those of `staged(take)`.
-    """
+def write(takes, parents, out):
+    """Writes dataset.json, index.tsv, labels.tsv and takes/NN.txt to the new folder `out`."""
     (out / "takes").mkdir(parents=True)
-    document = layout(takes[0].joints, parents, takes[0].frame_rate_hz, name)
+    document = layout(takes[0].joints, parents, takes[0].frame_rate_hz)
     (out / "dataset.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
     index = ["path\tleader_side\tsubjects\n"]
     labels = ["path\tclass\tfrom_seconds\tto_seconds\n"]
     for take in takes:
         path = f"takes/{take.name}.txt"
-        (out / path).write_text(_sequence(staged(take)), encoding="utf-8")
+        (out / path).write_text(_sequence(take), encoding="utf-8")
         # A take counts as a subject, so that whole takes can be left out.
         index.append(f"{path}\tleft\ttake_{take.name.split('_')[0]}\n")
         labels += [f"{path}\t{label}\t{begin / take.frame_rate_hz:.3f}\t"

@@ -15,7 +15,7 @@ HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 if HAS_NUMPY:
     import make_salsa
     import numpy
-    from salsa import dataset_folder, moves, standing, takes
+    from salsa import dataset_folder, moves, takes
 
 JOINTS = ("Hips", "Spine", "Chest", "Neck", "Head", "HeadTop",
           "LShoulder", "LElbow", "LWrist", "LHand", "RShoulder", "RElbow", "RWrist", "RHand",
@@ -170,22 +170,6 @@ class MakeSalsaTest(unittest.TestCase):
             self.assertLessEqual(float(end), 5.0)
         self.assertIn("takes/01.txt\tleft\ttake_01", (out / "index.tsv").read_text())
 
-    def test_leads_are_the_same_takes_for_a_standing_person(self):
-        self.assertEqual(self.run_script(self.archive(), "--leads", str(self.folder / "leads")), 0)
-        self.assertEqual(json.loads((self.folder / "leads/dataset.json").read_text())["name"],
-                         "salsa_lead")
-        self.assertEqual((self.folder / "leads/labels.tsv").read_text(),
-                         (self.folder / "out/labels.tsv").read_text())
-        motion = json.loads((self.folder / "leads/standing.json").read_text())
-        self.assertEqual(len(motion["joint_names"]), 22)
-        self.assertEqual(len(motion["leader"]), 900)
-        self.assertIn([motion["joint_names"].index("left_knee"),
-                       motion["joint_names"].index("left_ankle")], motion["bones"])
-        rows = [[line.split(",") for line in (self.folder / name / "takes/01.txt").read_text()
-                 .splitlines()] for name in ("out", "leads")]
-        for couple_row, lead_row in zip(*rows):
-            self.assertEqual(couple_row[1:67], lead_row[67:])  # the lead is the follower
-
     @unittest.skipUnless(HAS_MATPLOTLIB, "needs python3-matplotlib")
     def test_draws_a_sheet_of_every_class(self):
         self.assertEqual(self.run_script(self.archive(), "--sheets", str(self.folder / "sheets")), 0)
@@ -209,24 +193,6 @@ class MakeSalsaTest(unittest.TestCase):
         path.write_text("person\tframes\nlead_01\t5\n", encoding="utf-8")
         with self.assertRaisesRegex(takes.TakesError, "line 2: expected PERSON_NN"):
             takes.read_glitches(path)
-
-    def test_a_person_stands_in_front_of_every_lead(self):
-        for yaw in (0, 70, 200):
-            take = couple(20)
-            turned = people(numpy.full(20, float(yaw)), numpy.full((20, 2), 3.0))
-            staged = standing.leads(takes.Take("01", turned, take.follow, JOINTS, RATE), PARENTS)
-            numpy.testing.assert_array_equal(staged.follow, turned)
-            person = staged.lead[0]
-            numpy.testing.assert_array_equal(staged.lead[-1], person)
-            self.assertAlmostEqual(person[:, 1].min(), 0)
-            forward = numpy.array([numpy.sin(numpy.radians(yaw)), 0, numpy.cos(numpy.radians(yaw))])
-            apart = (person[0] - turned[0, 0]) * [1, 0, 1]
-            numpy.testing.assert_allclose(apart, standing.DISTANCE_METRES * forward, atol=1e-9)
-            toes = person[take.joint("LToe")] - person[take.joint("LAnkle")]
-            self.assertLess(toes @ forward, 0)  # looks at the lead
-            across = person[take.joint("LHip")] - person[take.joint("RHip")]
-            numpy.testing.assert_allclose(
-                numpy.cross([0, 1, 0], -forward) @ across, numpy.linalg.norm(across), atol=1e-9)
 
     def test_every_joint_has_duets_name(self):
         self.assertEqual([dataset_folder.joint_name(name) for name in ("Hips", "HeadTop", "RToe")],
