@@ -7,7 +7,7 @@ import tempfile
 
 import bpy
 
-from . import leader, partner, pins, program, retarget
+from . import leader, partner, pins, program
 from .program import DuetError
 
 GALLERY_SIZE = 8
@@ -103,8 +103,6 @@ def show(scene, index):
     if not os.path.isfile(answer.file):
         raise DuetError("The answers of an earlier session are gone. Press React again.")
     yield from show_file(scene, answer.file, "right", ["--skeleton", answer.file], duet.body)
-    if retarget.follows(duet.target):
-        yield from retarget.follow(scene, duet.target)
     duet.chosen = index
     duet.seed = min(int(answer.seed), _LARGEST_SEED)
     duet.state = ", ".join(filter(None, (f"{partner.NAME}: seed {answer.seed}", answer.pins)))
@@ -116,10 +114,8 @@ def show_file(scene, motion, side, flags, body, first_frame=None):
     duet = scene.duet
     with tempfile.TemporaryDirectory() as work:
         file = os.path.join(work, "follower.glb")
-        if body == "LEADER":
-            rig = os.path.join(work, "rig.glb")
-            partner.export_rig(scene, duet.leader, leader.metres_per_unit(scene), rig)
-            flags = [*flags, "--rig", rig, *leader.joint_flags(duet, "--rig-joint-map")]
+        if body != "MANNEQUIN":
+            flags = [*flags, *_rig_flags(scene, body, os.path.join(work, "rig.glb"))]
         yield from program.run(duet, "convert", motion, "--side", side, *flags, "--out", file,
                                "--quiet")
         partner.remove_last(scene)
@@ -127,9 +123,16 @@ def show_file(scene, motion, side, flags, body, first_frame=None):
                     first_frame)
 
 
-def register():
-    bpy.utils.register_class(DuetAnswer)
+def _rig_flags(scene, body, file):
+    """Writes the armature whose copy the partner is, and returns the flags for it."""
+    duet = scene.duet
+    if body == "LEADER":
+        partner.export_rig(scene, duet.leader, leader.metres_per_unit(scene), file)
+        return ["--rig", file, *leader.joint_flags(duet, "--rig-joint-map")]
+    if duet.target is None:
+        raise DuetError("Choose your armature under Body: the partner becomes a copy of it.")
+    partner.export_rig(scene, duet.target, scene.unit_settings.scale_length, file)
+    return ["--rig", file, *leader.joint_flags(duet, "--rig-joint-map", "rig_bone")]
 
 
-def unregister():
-    bpy.utils.unregister_class(DuetAnswer)
+register, unregister = bpy.utils.register_classes_factory((DuetAnswer,))

@@ -125,10 +125,10 @@ class Recording:
         return ["--follower-start", f"{x:.4f},{max(z, middle):.4f},{-y:.4f}"]
 
 
-def joint_flags(settings, flag):
-    """A flag for every joint whose bone the user chose."""
-    return [word for joint in settings.joints if joint.bone
-            for word in (flag, f"{joint.name}={joint.bone}")]
+def joint_flags(settings, flag, field="bone"):
+    """A flag for every joint whose bone the user chose. `field`: of DuetJoint."""
+    chosen = [(joint.name, getattr(joint, field)) for joint in settings.joints]
+    return [word for joint, bone in chosen if bone for word in (flag, f"{joint}={bone}")]
 
 
 def metres_per_unit(scene):

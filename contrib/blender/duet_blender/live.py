@@ -11,7 +11,7 @@ import time
 import bpy
 from mathutils import Vector
 
-from . import answers, leader, partner, program, retarget
+from . import answers, leader, partner, program
 from .program import DuetError
 from .puppet import Puppet
 from .stream import Stream
@@ -80,7 +80,7 @@ class Session:
         self._places = None  # the leader's, in the last frame that was sent
         self._kept = collections.deque(maxlen=round(KEPT_SECONDS * self.rate))
         self._first_frame = scene.frame_current
-        self._puppet = self._trunk = None
+        self._puppet = None
         self._begin, self._stop_by, self._error = clock(), None, ""
         self._stream = Stream(path, [
             "--server", duet.server, *(["--model", duet.model] if duet.model else []),
@@ -213,11 +213,8 @@ class Session:
 
     def _pose(self, frame):
         metres = self._recording.metres
-        points = [Vector((x, -z, y)) / metres
-                  for x, y, z in zip(frame[::3], frame[1::3], frame[2::3])]
-        self._puppet.pose(points)
-        if self._trunk:
-            self._trunk.place(dict(zip(self.joints, points)))
+        self._puppet.pose([Vector((x, -z, y)) / metres
+                           for x, y, z in zip(frame[::3], frame[1::3], frame[2::3])])
 
     def _phases(self):
         """A generator with a step for each tick: waits for the first answer, adds the partner, waits
@@ -236,8 +233,6 @@ class Session:
             yield from answers.show_file(scene, file, "left", ["--skeleton", skeleton], "MANNEQUIN")
             armature = partner.last(scene)
             armature.animation_data_clear()
-            if duet.target:
-                self._trunk = yield from retarget.follow_live(scene, duet.target)
             self._puppet = Puppet(armature, self.joints)
             self._pose(self._kept[-1])
             while not self._stream.has_ended() or self._stop_by is None:
@@ -245,14 +240,12 @@ class Session:
             while bpy.context.mode != "OBJECT":  # an armature cannot be imported
                 yield
             self._show()
-            self._puppet = self._trunk = None
+            self._puppet = None
             self._keeps = True
             self._write(file, self._kept)
             first = self._first_frame + self.frames_answered - len(self._kept)
             yield from answers.show_file(scene, file, "left", ["--skeleton", skeleton], duet.body,
                                          first)
-        if retarget.follows(duet.target):
-            yield from retarget.follow(scene, duet.target)
 
     def _write(self, path, frames):
         """Writes the partner's motion as a file of Duet."""

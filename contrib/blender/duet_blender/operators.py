@@ -5,7 +5,7 @@ import time
 
 import bpy
 
-from . import answers, leader, live, partner, program, retarget, settings
+from . import answers, leader, live, partner, program, settings
 
 STEP_SECONDS = 0.02  # maximum work per tick
 TICK_SECONDS = 0.05
@@ -156,39 +156,6 @@ class DUET_OT_key_labels(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class DUET_OT_follow(_Working):
-    """Lets the chosen armature follow the partner, by constraints that you can change"""
-
-    bl_idname = "duet.follow"
-    bl_label = "Follow the partner"
-
-    @classmethod
-    def poll(cls, context):
-        return context.scene.duet.target is not None and _can_replace(context)
-
-    def work(self, context):
-        duet = context.scene.duet
-        yield from retarget.follow(context.scene, duet.target)
-        duet.state = f"{duet.target.name} follows the partner"
-        _push_undo(self.bl_label)
-
-
-class DUET_OT_bake(bpy.types.Operator):
-    """Turns what the armature follows into an action of its own, and removes the constraints"""
-
-    bl_idname = "duet.bake"
-    bl_label = "Bake"
-    bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context):
-        return retarget.follows(context.scene.duet.target) and _can_replace(context)
-
-    def execute(self, context):
-        retarget.bake(context, context.scene.duet.target)
-        return {"FINISHED"}
-
-
 class DUET_OT_keep(bpy.types.Operator):
     """Keeps the last partner as a take, so that the next React adds another one"""
 
@@ -272,15 +239,6 @@ class DUET_OT_stop_live(bpy.types.Operator):
 
 
 _CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react, DUET_OT_show_eight, DUET_OT_choose,
-            DUET_OT_key_labels, DUET_OT_follow, DUET_OT_bake, DUET_OT_keep,
-            DUET_OT_play_live, DUET_OT_stop_live)
+            DUET_OT_key_labels, DUET_OT_keep, DUET_OT_play_live, DUET_OT_stop_live)
 
-
-def register():
-    for operator in _CLASSES:
-        bpy.utils.register_class(operator)
-
-
-def unregister():
-    for operator in reversed(_CLASSES):
-        bpy.utils.unregister_class(operator)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

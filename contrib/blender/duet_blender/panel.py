@@ -31,6 +31,8 @@ class VIEW3D_PT_duet(bpy.types.Panel):
         layout.prop(duet, "variety")
         layout.prop(duet, "candidates")
         layout.prop(duet, "body")
+        if duet.body == "OWN":
+            layout.prop(duet, "target")
         row = layout.row(align=True)
         row.operator("duet.react", icon="ARMATURE_DATA")
         row.operator("duet.show_eight", icon="OUTLINER_OB_GROUP_INSTANCE")
@@ -51,11 +53,18 @@ def _draw_answers(layout, duet):
                         depress=index == duet.chosen).index = index
 
 
-class VIEW3D_PT_duet_live(bpy.types.Panel):
-    bl_label = "Live"
+class _Part:
+    """Base of the panels below the first one."""
+
     bl_parent_id = "VIEW3D_PT_duet"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class VIEW3D_PT_duet_live(_Part, bpy.types.Panel):
+    bl_label = "Live"
+    bl_options = set()
 
     def draw(self, context):
         self.layout.use_property_split = True
@@ -66,12 +75,8 @@ class VIEW3D_PT_duet_live(bpy.types.Panel):
             self.layout.operator("duet.play_live", icon="PLAY")
 
 
-class VIEW3D_PT_duet_pins(bpy.types.Panel):
+class VIEW3D_PT_duet_pins(_Part, bpy.types.Panel):
     bl_label = "Pins"
-    bl_parent_id = "VIEW3D_PT_duet"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout, duet = self.layout, context.scene.duet
@@ -96,47 +101,31 @@ class VIEW3D_PT_duet_pins(bpy.types.Panel):
         layout.operator("duet.add_pin", icon="PINNED")
 
 
-class VIEW3D_PT_duet_armature(bpy.types.Panel):
-    bl_label = "Your armature"
-    bl_parent_id = "VIEW3D_PT_duet"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context):
-        self.layout.use_property_split = True
-        self.layout.prop(context.scene.duet, "target")
-        row = self.layout.row(align=True)
-        row.operator("duet.follow", icon="CONSTRAINT_BONE")
-        row.operator("duet.bake", icon="KEYFRAME_HLT")
-
-
-class VIEW3D_PT_duet_reading(bpy.types.Panel):
+class VIEW3D_PT_duet_reading(_Part, bpy.types.Panel):
     bl_label = "Reading the leader"
-    bl_parent_id = "VIEW3D_PT_duet"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout, duet = self.layout, context.scene.duet
         layout.use_property_split = True
         layout.prop(duet, "unit")
         layout.label(text="Bones whose names are not recognised:")
-        for joint in duet.joints:
-            title = joint.name.replace("_", " ").capitalize()
-            if duet.leader:
-                layout.prop_search(joint, "bone", duet.leader.data, "bones", text=title)
-            else:
-                layout.prop(joint, "bone", text=title)
+        _draw_bones(layout, duet.joints, "bone", duet.leader)
+        if duet.body == "OWN":
+            layout.label(text="Of your armature:")
+            _draw_bones(layout, duet.joints, "rig_bone", duet.target)
 
 
-class VIEW3D_PT_duet_server(bpy.types.Panel):
+def _draw_bones(layout, joints, field, armature):
+    for joint in joints:
+        title = joint.name.replace("_", " ").capitalize()
+        if armature:
+            layout.prop_search(joint, field, armature.data, "bones", text=title)
+        else:
+            layout.prop(joint, field, text=title)
+
+
+class VIEW3D_PT_duet_server(_Part, bpy.types.Panel):
     bl_label = "Server"
-    bl_parent_id = "VIEW3D_PT_duet"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         self.layout.use_property_split = True
@@ -145,15 +134,5 @@ class VIEW3D_PT_duet_server(bpy.types.Panel):
         self.layout.prop_search(context.scene.duet, "model", context.scene.duet, "models")
 
 
-_PANELS = (VIEW3D_PT_duet, VIEW3D_PT_duet_live, VIEW3D_PT_duet_pins, VIEW3D_PT_duet_armature, VIEW3D_PT_duet_reading,
-           VIEW3D_PT_duet_server)
-
-
-def register():
-    for panel in _PANELS:
-        bpy.utils.register_class(panel)
-
-
-def unregister():
-    for panel in reversed(_PANELS):
-        bpy.utils.unregister_class(panel)
+_PANELS = (VIEW3D_PT_duet, VIEW3D_PT_duet_live, VIEW3D_PT_duet_pins, VIEW3D_PT_duet_reading, VIEW3D_PT_duet_server)
+register, unregister = bpy.utils.register_classes_factory(_PANELS)

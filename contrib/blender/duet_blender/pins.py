@@ -139,14 +139,4 @@ class DUET_OT_remove_pin(bpy.types.Operator):
         return {"FINISHED"}
 
 
-_CLASSES = (DuetPin, DUET_OT_add_pin, DUET_OT_remove_pin)
-
-
-def register():
-    for one in _CLASSES:
-        bpy.utils.register_class(one)
-
-
-def unregister():
-    for one in reversed(_CLASSES):
-        bpy.utils.unregister_class(one)
+register, unregister = bpy.utils.register_classes_factory((DuetPin, DUET_OT_add_pin, DUET_OT_remove_pin))

@@ -20,9 +20,8 @@ def find(program):
     return found
 
 
-def run(settings, *arguments, may_fail=False):
-    """A generator that yields until the program has ended, and returns its output. `may_fail`: also
-    if it reports an error."""
+def run(settings, *arguments):
+    """A generator that yields until the program has ended, and returns its output."""
     process = subprocess.Popen([find(settings.program), *map(str, arguments)],
                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
@@ -37,7 +36,7 @@ def run(settings, *arguments, may_fail=False):
         if process.poll() is None:
             process.kill()
             process.communicate()
-    if process.returncode != 0 and not may_fail:
+    if process.returncode != 0:
         raise DuetError(in_the_panel(errors.strip())
                         or f"duet exited with code {process.returncode}")
     return output

@@ -22,11 +22,14 @@ class DuetLabel(bpy.types.PropertyGroup):
 
 
 class DuetJoint(bpy.types.PropertyGroup):
-    """The joint `name` of the model, and the bone whose head it is."""
+    """The joint `name` of the model, and the bones whose head it is."""
 
     bone: bpy.props.StringProperty(
         name="Bone",
-        description="The bone whose head is this joint. Empty: recognised by the bones' names")
+        description="The leader's bone whose head is this joint. Empty: recognised by the bones' names")
+    rig_bone: bpy.props.StringProperty(
+        name="Bone of your armature",
+        description="Your armature's bone whose head is this joint. Empty: recognised by the bones' names")
 
 
 class DuetModel(bpy.types.PropertyGroup):
@@ -62,7 +65,7 @@ class DuetSettings(bpy.types.PropertyGroup):
         description="An empty at the partner's start. Without one, the model chooses")
     target: bpy.props.PointerProperty(
         name="Armature", type=bpy.types.Object, poll=_is_armature,
-        description="An armature of your own that follows the partner")
+        description="The armature whose copy the partner is")
     labels: bpy.props.CollectionProperty(type=DuetLabel)
     pins: bpy.props.CollectionProperty(type=pins.DuetPin)
     answers: bpy.props.CollectionProperty(type=answers.DuetAnswer)
@@ -79,7 +82,8 @@ class DuetSettings(bpy.types.PropertyGroup):
     body: bpy.props.EnumProperty(
         name="Body", description="The partner's body",
         items=(("MANNEQUIN", "Mannequin", "Duet's mannequin"),
-               ("LEADER", "Leader's rig", "A copy of the leader's armature and meshes")))
+               ("LEADER", "Leader's rig", "A copy of the leader's armature and meshes"),
+               ("OWN", "Your armature", "A copy of another armature of the scene and its meshes")))
     own_seed: bpy.props.BoolProperty(
         name="Seed", description="Request the answer of this seed. Otherwise the server chooses one by the leader's "
                                  "motion, and the field shows it")
@@ -102,26 +106,25 @@ class DuetSettings(bpy.types.PropertyGroup):
 
 def set_classes(settings, classes):
     """Sets the sliders to these classes. Weights of classes in both stay."""
-    if [label.name for label in settings.labels] == list(classes):
-        return
-    weights = {label.name: label.weight for label in settings.labels}
-    settings.labels.clear()
-    for name in classes:
-        label = settings.labels.add()
-        label.name = name
-        label.weight = weights.get(name, 0)
+    _set_names(settings.labels, classes, ("weight",))
 
 
 def set_joints(settings, joints):
     """Sets the joints that bones can be chosen for. Choices of joints in both stay."""
-    if [joint.name for joint in settings.joints] == list(joints):
+    _set_names(settings.joints, joints, ("bone", "rig_bone"))
+
+
+def _set_names(collection, names, fields):
+    """Makes a collection of these names. Fields of names that it had keep their values."""
+    if collection.keys() == list(names):
         return
-    bones = {joint.name: joint.bone for joint in settings.joints}
-    settings.joints.clear()
-    for name in joints:
-        joint = settings.joints.add()
-        joint.name = name
-        joint.bone = bones.get(name, "")
+    known = {one.name: {field: getattr(one, field) for field in fields} for one in collection}
+    collection.clear()
+    for name in names:
+        one = collection.add()
+        one.name = name
+        for field, value in known.get(name, {}).items():
+            setattr(one, field, value)
 
 
 def set_models(settings, models):
@@ -152,11 +155,12 @@ def _fill_all(*_):
         fill(scene)
 
 
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (DuetLabel, DuetJoint, DuetModel, DuetSettings))
+
+
 def register():
-    bpy.utils.register_class(DuetLabel)
-    bpy.utils.register_class(DuetJoint)
-    bpy.utils.register_class(DuetModel)
-    bpy.utils.register_class(DuetSettings)
+    _register_classes()
     bpy.types.Scene.duet = bpy.props.PointerProperty(type=DuetSettings)
     bpy.app.handlers.load_post.append(_fill_all)
     if hasattr(bpy.data, "scenes"):
@@ -168,7 +172,4 @@ def register():
 def unregister():
     bpy.app.handlers.load_post.remove(_fill_all)
     del bpy.types.Scene.duet
-    bpy.utils.unregister_class(DuetSettings)
-    bpy.utils.unregister_class(DuetModel)
-    bpy.utils.unregister_class(DuetJoint)
-    bpy.utils.unregister_class(DuetLabel)
+    _unregister_classes()

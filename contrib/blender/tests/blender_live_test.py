@@ -68,9 +68,6 @@ class BlenderLiveTest(tools.FolderTest):
     def test_bones_of_the_partner_point_to_the_next_joint(self):
         self.assertLess(self.state["tails"], 0.03)
 
-    def test_own_armature_follows_live(self):
-        self.assertLess(self.state["feet"], 0.01)
-
     def test_answers_are_the_same_although_a_server_died(self):
         frames = [json.loads(line) for line in self.undisturbed.stdout.splitlines()][1:]
         self.assertEqual(self.state["frames"], [FRAMES, FRAMES])
@@ -93,7 +90,6 @@ class BlenderLiveTest(tools.FolderTest):
         self.assertAlmostEqual(first, 11, delta=0.01)
         self.assertAlmostEqual(last, 80, delta=0.01)
         self.assertLess(self.state["kept"], REACHED)
-        self.assertLess(self.state["kept_feet"], 0.01)
         self.assertEqual(self.state["frame_now"], 75)
 
     def test_frames_that_blender_missed_are_interpolated(self):

@@ -76,8 +76,7 @@ class BlenderShapeTest(unittest.TestCase):
                          ["joint", "thing", "softness", "joint", "thing", "bone", "softness"])
         self.assertIn("2 key frames, 25 to 45", panel)
         self.assertIn("1 key frame, 50", panel)
-        armature, reading, server = self.state["other_panels"]
-        self.assertEqual(armature, ["target", "duet.follow", "duet.bake"])
+        reading, server = self.state["other_panels"]
         self.assertIn("bone", reading)
         self.assertEqual(server, ["server", "program", "model"])
 
@@ -135,30 +134,16 @@ class BlenderShapeTest(unittest.TestCase):
 
     # An armature of the user's.
 
-    def test_armature_follows_the_partner_as_well_as_the_program_fits_it(self):
-        for name, fits in self.state["characters"].items():
-            blender, program = fits["blender"], fits["program"]
-            mean = {way: sum(of.values()) / len(of) for way, of in fits.items()}
-            self.assertLess(mean["blender"], mean["program"] + 0.03, name)
-            for joint in ("left_hand", "right_hand", "left_foot", "right_foot"):
-                self.assertLess(blender[joint], program[joint] + 0.05, f"{name}: {joint}")
-        self.assertLess(self.state["characters"]["Usual"]["blender"]["left_foot"], REACHED)
-
-    def test_armature_follows_the_next_answer_too(self):
-        self.assertEqual(self.state["constraints"], 4 + 1 + 9 + 4)  # trunk, limbs and neck, hands and feet
-        for joint in ("left_foot", "right_foot"):
-            self.assertLess(self.state["followed"][joint], REACHED)
-
-    def test_armature_moves_without_jumps(self):
-        for partner, own in self.state["steps"]:
-            self.assertLess(own, 1.5 * partner + 0.02)
-
-    def test_baked_armature_keeps_its_poses_without_constraints(self):
-        self.assertLess(self.state["baked"], 1e-3)
-        self.assertEqual((self.state["left"], self.state["left_constraints"]), ([], 0))
-
-    def test_armature_that_constraints_do_not_fit_is_reported(self):
-        self.assertIn("Use Body: Leader's rig", self.state["odd_rig"])
+    def test_partner_is_a_copy_of_the_users_armature(self):
+        self.assertIn("Choose your armature under Body", self.state["no_armature"])
+        self.assertEqual(self.state["copied_bones"], self.state["own_bones"])
+        for name, far in self.state["characters"].items():
+            for joint in ("left_foot", "right_foot"):
+                self.assertLess(far[joint], REACHED, f"{name}: {joint}")
+            # Joints of a larger or smaller character are elsewhere.
+            self.assertLess(sum(far.values()) / len(far), 0.06 if name == "Usual" else 0.2, name)
+        for joint in ("left_hand", "right_hand"):
+            self.assertLess(self.state["characters"]["Usual"][joint], 0.04)
 
     # Other models.
 

@@ -127,13 +127,12 @@ state["no_server"] = attempt(lambda: tick_until(lambda: False), duet_blender.pro
 state["after_failure"] = live.is_playing()
 settings.server = f"ipv4:{servers}"
 
-# ---- A session during which the first server dies, with an armature that follows.
-character = settings.target = scenes.add_character(scene, "Usual")
+# ---- A session during which the first server dies.
 session = start()
 state["panel"] = scenes.drawn(duet_blender.panel.VIEW3D_PT_duet_live)
 state["second"] = attempt(start, duet_blender.program.DuetError)
 state["react"] = attempt(bpy.ops.duet.react)
-heads, tails, feet = [], [], []
+heads, tails = [], []
 for frame in play(session, range(FIRST, LAST + 1)):
     joints = session.joints
     answer = session.answers[-1]
@@ -143,15 +142,14 @@ for frame in play(session, range(FIRST, LAST + 1)):
     for bone, joint in LIMBS:
         tail = follower().matrix_world @ follower().pose.bones[bone].tail
         tails.append(distance([value / METRE for value in tail], place(follower(), joint)))
-    feet.append(distance(place(character, "LeftFoot"), place(follower(), "left_foot")))
     if frame == FIRST + KILLED_AFTER:
         (OUT / "wanted").touch()
         tick_until((OUT / "started").exists)
         os.kill(int(pid), signal.SIGKILL)
     if frame == FIRST + LABELS_AFTER:
         settings.labels["hug"].weight, settings.labels["push"].weight = 0, 1
-state["heads"], state["tails"], state["feet"] = max(heads), max(tails), max(feet)
-state["shown"] = len(feet)
+state["heads"], state["tails"] = max(heads), max(tails)
+state["shown"] = len(heads) // len(session.joints)
 state["playing"] = settings.state
 end(session)
 state["ended"] = settings.state
@@ -167,11 +165,9 @@ kept = session.answers[LAST - 5 - FIRST]
 hand = session.joints.index("left_hand")
 x, y, z = kept[3 * hand:3 * hand + 3]
 state["kept"] = distance(place(follower(), "left_hand"), (x, -z, y))
-state["kept_feet"] = distance(place(character, "LeftFoot"), place(follower(), "left_foot"))
 state["frame_now"] = scene.frame_current
 
 # ---- Blender is busy for a moment, then for long.
-settings.target = None
 session = start()
 for _ in play(session, range(FIRST, FIRST + 3)):
     pass

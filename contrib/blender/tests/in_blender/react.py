@@ -10,29 +10,17 @@ import pathlib
 import sys
 
 import bpy
-import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import scenes  # noqa: E402
 
 addon_folder, leader_file, server, duet, out = sys.argv[sys.argv.index("--") + 1:]
-sys.path.insert(0, addon_folder)
-import duet_blender  # noqa: E402
-import duet_blender.leader  # noqa: E402
-
-if "bool" not in numpy.__dict__:  # Debian 12's importer, see duet_blender.partner
-    numpy.bool = bool
-
 OUT = pathlib.Path(out)
 FIRST_FRAME, LAST_FRAME = 11, 50
 
-bpy.ops.wm.read_factory_settings(use_empty=True)
-scene = bpy.context.scene
-scene.render.fps, scene.render.fps_base = 24, 1
-scene.unit_settings.scale_length = 0.5  # a unit of half a metre
-bpy.ops.import_scene.gltf(filepath=leader_file)
-scene.render.fps = 24
-scene.frame_start, scene.frame_end = FIRST_FRAME, LAST_FRAME
-scene.frame_set(20)
-leader = next(thing for thing in scene.objects if thing.type == "ARMATURE")
-leader.name = "Rig"
+scene, leader = scenes.open_leader(leader_file, addon_folder, (FIRST_FRAME, LAST_FRAME), 20)
+import duet_blender  # noqa: E402
+import duet_blender.leader  # noqa: E402
 
 duet_blender.register()
 settings = scene.duet

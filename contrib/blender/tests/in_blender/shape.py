@@ -6,8 +6,8 @@ Writes what there is afterwards as JSON into the folder OUT.
 """
 
 import json
+import math
 import pathlib
-import subprocess
 import sys
 
 import bpy
@@ -158,7 +158,7 @@ hand.thing = None
 state["nothing"] = attempt(bpy.ops.duet.react)
 settings.pins.clear()
 
-# ---- An armature of the user's.
+# ---- A copy of an armature of the user's.
 JOINTS = {"head": "Head", "neck": "Neck"}
 for side in ("left", "right"):
     for joint, bone in (("shoulder", "Arm"), ("elbow", "ForeArm"), ("hand", "Hand"), ("hip", "UpLeg"),
@@ -166,76 +166,33 @@ for side in ("left", "right"):
         JOINTS[f"{side}_{joint}"] = side.capitalize() + bone
 
 
-def distances(armature, prefix=""):
-    """Mean distance of each joint of an armature from the partner's, in metres."""
-    found = {}
-    for joint, bone in JOINTS.items():
-        total = 0
-        for frame in range(FIRST, LAST + 1, 7):
-            total += sum((a - b) ** 2 for a, b in zip(place(armature, prefix + bone, frame),
-                                                     place(follower(), joint, frame))) ** 0.5
-        found[joint] = total / len(range(FIRST, LAST + 1, 7))
-    return found
+FRAMES = range(FIRST, LAST + 1, 7)
 
 
-def largest_step(armature, bone):
-    """The farthest that a bone moves from one frame to the next, in metres."""
-    places = [place(armature, bone, frame) for frame in range(FIRST, LAST + 1)]
-    return max(sum((a - b) ** 2 for a, b in zip(*pair)) ** 0.5 for pair in zip(places, places[1:]))
-
-
-def pose(armature, prefix=""):
-    return [place(armature, prefix + bone, frame) for bone in JOINTS.values()
-            for frame in range(FIRST, LAST + 1, 7)]
-
-
-def by_program(armature, prefix):
-    """The same by the program: the answer on a file of the armature."""
-    rig_file, file = OUT / "character.glb", OUT / "on_character.glb"
-    duet_blender.partner.export_rig(scene, armature, 1 / METRE, rig_file)
-    subprocess.run([duet, "convert", settings.answers[0].file, "--side", "right", "--rig", rig_file,
-                    "--out", file, "--quiet"], check=True)
-    before = set(scene.objects)
-    bpy.ops.import_scene.gltf(filepath=str(file))
-    scene.render.fps = 24
-    new = [thing for thing in scene.objects if thing not in before]
-    armature = next(thing for thing in new if thing.type == "ARMATURE")
-    for curve in armature.animation_data.action.fcurves:
-        for key in curve.keyframe_points:
-            key.co.x += FIRST
-    found = distances(armature, prefix)
-    for thing in new:
-        bpy.data.objects.remove(thing)
-    return found
+def distances(prefix):
+    """Mean distance of each joint of the partner's armature from that of the mannequin, in metres."""
+    return {joint: sum(math.dist(place(follower(), prefix + bone, frame), wanted)
+                       for frame, wanted in zip(FRAMES, mannequin[joint])) / len(FRAMES)
+            for joint, bone in JOINTS.items()}
 
 
 bpy.data.objects.remove(rig)
 settings.labels["hug"].weight = 1
 assert bpy.ops.duet.react() == {"FINISHED"}
+settings.body = "OWN"
+state["no_armature"] = attempt(bpy.ops.duet.choose, index=0)
+settings.body = "MANNEQUIN"
+mannequin = {joint: [place(follower(), joint, frame) for frame in FRAMES] for joint in JOINTS}
 state["characters"] = {}
 for name, size, prefix in (("Usual", 1, ""), ("Large", 1.15, "mixamorig:"), ("Small", 0.85, "")):
-    character = settings.target = scenes.add_character(scene, name, size, prefix)
-    assert bpy.ops.duet.follow() == {"FINISHED"}
-    state["characters"][name] = {"blender": distances(character, prefix),
-                                 "program": by_program(character, prefix)}
-    if name != "Usual":
-        continue
-    assert bpy.ops.duet.follow() == {"FINISHED"}  # replaces its own constraints
-    state["constraints"] = sum(len(bone.constraints) for bone in character.pose.bones)
-    settings.own_seed, settings.seed = True, 5
-    assert bpy.ops.duet.react() == {"FINISHED"}  # the armature follows the new partner
-    state["followed"] = distances(character)
-    state["steps"] = [[largest_step(follower(), joint), largest_step(character, JOINTS[joint])]
-                      for joint in ("left_elbow", "right_elbow", "left_hand", "left_knee")]
-    before = pose(character)
-    assert bpy.ops.duet.bake() == {"FINISHED"}
-    state["baked"] = max(abs(a - b) for one, other in zip(before, pose(character))
-                         for a, b in zip(one, other))
-    state["left"] = [thing.name for thing in scene.objects if thing.name.startswith("Duet ")
-                     and thing.type == "EMPTY"]
-    state["left_constraints"] = sum(len(bone.constraints) for bone in character.pose.bones)
-settings.target = leader
-state["odd_rig"] = attempt(bpy.ops.duet.follow)
+    settings.target = scenes.add_character(scene, name, size, prefix)
+    settings.body = "OWN"
+    assert bpy.ops.duet.choose(index=0) == {"FINISHED"}
+    state["characters"][name] = distances(prefix)
+    state["own_bones"] = sorted(bone.name for bone in settings.target.data.bones)
+    state["copied_bones"] = sorted(bone.name for bone in follower().data.bones)
+    bpy.data.objects.remove(settings.target)
+settings.body = "MANNEQUIN"
 
 # ---- Another model.
 before = set(scene.objects)
