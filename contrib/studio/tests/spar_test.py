@@ -2,44 +2,20 @@
 
 import io
 import json
-import unittest
 import zipfile
 
-import gateways
-import tools
-from browser import Browser
-
-gateways.prepare()
+from studio_pages import PageTest  # before modules that it makes available
 
 import numpy as np  # noqa: E402
+import tools  # noqa: E402
 
 # From then on, the page's time passes only with PASS. Frames are sent as usual.
 FREEZE = "window.pass = advance; advance = () => {}; undefined"
 PASS = "(() => {{ for (let i = 0; i < {steps}; ++i) pass(1 / 60); }})()"
 POSE = "Array.from(spar.leader.pose)"
-TARGETS = """[...document.querySelectorAll('button, select, input[type=number]')]
-    .filter((item) => item.offsetParent !== null)
-    .map((item) => [item.id || item.textContent.trim(),
-                    item.getBoundingClientRect().width, item.getBoundingClientRect().height])"""
-NAMELESS = """[...document.querySelectorAll('input, select, button')].filter((item) =>
-    !(item.labels?.length || item.getAttribute('aria-label') || item.textContent.trim()))
-    .map((item) => item.outerHTML)"""
 
 
-class SparTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.browser = Browser()  # first: without one, the test ends here
-        cls.addClassCleanup(cls.browser.close)
-        cls.port = tools.free_port()
-        cls.server = tools.Server(port=cls.port)
-        cls.addClassCleanup(lambda: cls.server.stop())
-        cls.gateway = gateways.Gateway(cls.server.address)
-        cls.addClassCleanup(cls.gateway.stop)
-
-    def setUp(self):
-        self.browser.forget()
-
+class SparTest(PageTest):
     def open(self, query="", width=420, height=420, frozen=False):
         page = self.browser.open(f"{self.gateway.url}/spar{query}", width=width, height=height)
         self.addCleanup(page.close)
@@ -332,10 +308,7 @@ class SparTest(unittest.TestCase):
 
     def test_every_control_works_on_a_phone_and_has_a_name(self):
         page = self.open(width=375, height=720, frozen=True)
-        self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), 375)
-        for what, width, height in page.evaluate(TARGETS):
-            self.assertGreaterEqual(min(width, height), 40, what)
-        self.assertEqual(page.evaluate(NAMELESS), [])
+        self.check_controls(page, "button, select, input[type=number]")
         page.click("#moves button:nth-child(2)")
         self.assertEqual(page.state()["move"], "push")
         box = page.evaluate("(({x, y}) => [x, y])(document.querySelector("

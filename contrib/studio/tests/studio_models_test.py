@@ -9,17 +9,11 @@ from studio_pages import FOLLOWER, StudioTest  # before modules that it makes av
 import numpy as np  # noqa: E402
 import tools  # noqa: E402
 
-CATCH_SAVED = """window.saved = [];
-  saveBlob = async (blob, name) => { window.saved.push([name, await blob.text()]); }; undefined"""
-
 
 class StudioModelsTest(StudioTest):
     def choose_model(self, page, name):
-        page.evaluate(f"""(() => {{
-          const field = document.querySelector('[name=model]');
-          field.value = state.models.map(nameOf).find((model) => model.startsWith('{name}@'));
-          field.dispatchEvent(new Event('input', {{bubbles: true}}));
-        }})()""")
+        self.set(page, "[name=model]", page.evaluate(
+            f"state.models.map(nameOf).find((model) => model.startsWith('{name}@'))"))
 
     def take_sample(self, page, name):
         page.evaluate(f"""[...document.querySelectorAll('#samples button')].find(
@@ -54,18 +48,12 @@ class StudioModelsTest(StudioTest):
 
     def test_downloads_have_all_joints(self):
         page = self.open_dance()
-        page.evaluate(CATCH_SAVED)
-        page.evaluate("attempt(download)('json')")
-        page.wait_until("window.saved.length === 1")
-        name, text = page.evaluate("window.saved.pop()")
+        name, text = self.saved(page, lambda: page.evaluate("attempt(download)('json')"))
         self.assertRegex(name, r"^salsa_salsa@\d+_basic1_seed\d+\.json$")
         pair = json.loads(text)
         self.assertEqual(pair["joint_names"], self.joints(page))
         np.testing.assert_allclose(np.ravel(pair["follower"]), page.evaluate(FOLLOWER), atol=1e-5)
-        page.evaluate("attempt(downloadOnRig)()")
-        page.wait_until("window.saved.length === 1 || document.documentElement.dataset.failed === 'true'")
-        self.assertEqual(page.state()["failed"], "false", page.text("#status"))
-        name, text = page.evaluate("window.saved.pop()")
+        name, text = self.saved(page, lambda: page.evaluate("attempt(downloadOnRig)()"))
         self.assertRegex(name, r"\.follower\.bvh$")
         with tempfile.TemporaryDirectory() as folder:
             files = [pathlib.Path(folder) / name for name in ("pair.json", "on_rig.bvh", "on_rig.json")]

@@ -1,15 +1,12 @@
 """Pins in the studio: handles of joints, the list, links and sessions, in a real browser against a real
 server."""
 
-import json
-
-from studio_pages import StudioTest  # before modules that it makes available
+from studio_pages import HUG, StudioTest  # before modules that it makes available
 
 import duet_motion as duet  # noqa: E402
 import numpy as np  # noqa: E402
 import tools  # noqa: E402
 
-HUG = "#leader=hug.bvh&labels=hug:1"
 FRAME = 40
 RIGHT_HAND = 8
 REACHED = 0.01  # metres
@@ -17,21 +14,9 @@ HANDLE = """(() => {{
   const box = document.querySelector('#pin-handles [data-joint={joint}]').getBoundingClientRect();
   return [box.left + box.width / 2, box.top + box.height / 2];
 }})()"""
-CATCH_SAVED = """window.saved = [];
-  saveBlob = async (blob, name) => { window.saved.push([name, await blob.text()]); }; undefined"""
 
 
 class StudioPinsTest(StudioTest):
-    def key(self, page, key, modifiers=0):
-        """A real key stroke; modifiers: 2 is Ctrl, 8 is Shift."""
-        for kind in ("keyDown", "keyUp"):
-            page.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers)
-        page.next_frame()
-
-    def seek(self, page, frame):
-        page.evaluate(f"seekAll({frame})")
-        page.wait_until(f"theatre.frame === {frame}")
-
     def open_answered(self, address=HUG, **size):
         page = self.open_still(address, **{"width": 1200, "height": 900, **size})
         self.react(page)
@@ -164,14 +149,11 @@ class StudioPinsTest(StudioTest):
         pins, shown = self.pins(page), self.shown(page)
         address = page.evaluate("location.hash")
         self.assertIn("pin=right_hand@40=", address)
-        page.evaluate(CATCH_SAVED)
-        self.key(page, "s", modifiers=2)
-        page.wait_until("window.saved.length > 0")
-        [[_, text]] = page.evaluate("window.saved")
+        _, text = self.save_session(page)
         other = self.open_still(address, width=1200, height=900)
         self.assertEqual(self.pins(other), pins)
         other.evaluate("settings.pins = []; changed('test')")
-        other.evaluate(f"attempt(takeFile)(new File([{json.dumps(text)}], 'w.session.json'))")
+        self.open_text(other, text)
         other.wait_until("state.takes.length === 1")
         self.assertEqual(self.pins(other), pins)
         np.testing.assert_allclose(self.shown(other), shown, atol=1e-6)
@@ -190,10 +172,7 @@ class StudioPinsTest(StudioTest):
         page.call("Emulation.setTouchEmulationEnabled", enabled=True)
         page.evaluate("showPins(true); scrollTo(0, 0)")
         start = self.handle(page)
-        for kind, point in (("touchStart", start), ("touchMove", (start[0] + 10, start[1] - 25)),
-                            ("touchEnd", None)):
-            page.call("Input.dispatchTouchEvent", type=kind,
-                      touchPoints=[{"x": point[0], "y": point[1]}] if point else [])
+        self.touch(page, start, (start[0] + 10, start[1] - 25))
         page.wait_until("settings.pins.length === 1")
         self.assertEqual(self.pins(page)[0]["joint"], "right_hand")
         self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), 390)

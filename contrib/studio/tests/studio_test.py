@@ -11,7 +11,7 @@ import sys
 import tempfile
 import unittest
 
-from studio_pages import FOLLOWER, StudioTest  # before modules that it makes available
+from studio_pages import FOLLOWER, HUG, StudioTest  # before modules that it makes available
 
 import duet_motion as duet  # noqa: E402
 import numpy as np  # noqa: E402
@@ -19,7 +19,6 @@ import studio_minutes  # noqa: E402
 import tools  # noqa: E402
 
 GUIDE = (tools.SOURCE / "contrib/studio/guide.md").read_text(encoding="utf-8")
-HUG = "#leader=hug.bvh&labels=hug:1"
 FRAMES = 91
 TORSO = 2
 # The pixel of a weight at a frame in the lane of a class.
@@ -34,9 +33,6 @@ IN_MARKER = """(() => {{
   const box = document.querySelector('#start-marker .{part}').getBoundingClientRect();
   return [box.left + box.width / 2, box.top + box.height / 2];
 }})()"""
-# Replaces saving by keeping the text.
-CATCH_SAVED = """window.saved = [];
-  saveBlob = async (blob, name) => { window.saved.push([name, await blob.text()]); }; undefined"""
 # Whether a tile shows both people.
 TILE_COLOURS = """gallery.tiles.map((tile) => {
   const canvas = tile.querySelector('canvas');
@@ -51,13 +47,6 @@ TILE_COLOURS = """gallery.tiles.map((tile) => {
 
 
 class ToolsTest(StudioTest):
-    def key(self, page, key, modifiers=0):
-        """A real key stroke; modifiers: 2 is Ctrl, 8 is Shift."""
-        for kind in ("keyDown", "keyUp"):
-            page.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers,
-                      text=key if len(key) == 1 and kind == "keyDown" and not modifiers else "")
-        page.next_frame()
-
     def in_lane(self, page, name, frame, weight):
         return page.evaluate(IN_LANE.format(name=json.dumps(name), frame=frame, weight=weight))
 
@@ -69,18 +58,6 @@ class ToolsTest(StudioTest):
         document = page.call("DOM.getDocument")["root"]["nodeId"]
         node = page.call("DOM.querySelector", nodeId=document, selector=selector)["nodeId"]
         page.call("DOM.setFileInputFiles", nodeId=node, files=[str(path)])
-
-    def save_session(self, page):
-        page.evaluate(CATCH_SAVED)
-        self.key(page, "s", modifiers=2)
-        page.wait_until("window.saved.length > 0")
-        return page.evaluate("window.saved.pop()")
-
-    def open_text(self, page, text, name="work.session.json"):
-        """Opens a text as a file; returns what the page tells of it."""
-        page.evaluate("tell('opening')")
-        page.evaluate(f"attempt(takeFile)(new File([{json.dumps(text)}], {json.dumps(name)}))")
-        return page.text("#status")
 
     # Gallery.
 
@@ -204,8 +181,7 @@ class ToolsTest(StudioTest):
         self.set(page, "#point-weight", 7)  # out of range
         self.assertEqual(page.evaluate("settings.curves"), {"hug": [[31, -0.5]]})
         # The slider of a class with a curve sets a point in the current frame.
-        page.evaluate("seekAll(50)")
-        page.wait_until("theatre.frame === 50")
+        self.seek(page, 50)
         self.label(page, "hug", 0.25)
         self.assertEqual(page.evaluate("settings.curves"), {"hug": [[31, -0.5], [50, 0.25]]})
         page.evaluate("timeline.laneOf('hug').focus(31)")
@@ -222,9 +198,7 @@ class ToolsTest(StudioTest):
         page.wait_until("timeline.lanes[0].width > 0")
         start = self.in_lane(page, "push", 40, 0)
         to = self.in_lane(page, "push", 60, 0.8)
-        for kind, point in (("touchStart", start), ("touchMove", to), ("touchEnd", None)):
-            page.call("Input.dispatchTouchEvent", type=kind,
-                      touchPoints=[{"x": point[0], "y": point[1]}] if point else [])
+        self.touch(page, start, to)
         page.wait_until("curveOf(settings, 'push').length === 1")
         [[frame, weight]] = page.evaluate("settings.curves.push")
         self.assertAlmostEqual(frame, 60, delta=1)
@@ -287,8 +261,7 @@ class ToolsTest(StudioTest):
         self.assertTrue(page.evaluate("element('keep').disabled"))
         self.react(page)
         first = self.shown(page)
-        page.evaluate("seekAll(44)")
-        page.wait_until("theatre.frame === 44")
+        self.seek(page, 44)
         self.key(page, "l")
         self.assertIn("Frames 0 to 44 stay", page.text("#status"))
         self.press(page, "show-eight")
@@ -488,13 +461,10 @@ class ToolsTest(StudioTest):
             self.choose_file(page, "#rig-file", path)
             page.wait_until("state.rig !== null")
         self.assertEqual(page.text("#rig-name"), "robot.bvh")
-        page.evaluate(CATCH_SAVED)
         page.evaluate("attempt(downloadOnRig)()")
         self.assertIn("left_hand", page.text("#status"))
         self.set(page, "[name=rig_joint_map]", "left_hand=Flipper")
-        page.evaluate("attempt(downloadOnRig)()")
-        page.wait_until("window.saved.length > 0")
-        name, written = page.evaluate("window.saved.pop()")
+        name, written = self.saved(page, lambda: page.evaluate("attempt(downloadOnRig)()"))
         self.assertRegex(name, r"\.follower\.bvh$")
         self.assertEqual(re.findall(r"(?:ROOT|JOINT) \S+", written),
                          re.findall(r"(?:ROOT|JOINT) \S+", text))

@@ -4,23 +4,12 @@ person does with one file (studio_test.py tests the tools around it)."""
 import json
 import re
 
-from studio_pages import FOLLOWER, StudioTest  # before modules that it makes available
+from studio_pages import FOLLOWER, HUG, StudioTest  # before modules that it makes available
 
 import numpy as np  # noqa: E402
 import tools  # noqa: E402
 from duet_motion.rpc.v1 import status_pb2  # noqa: E402
 from duet_motion.v1 import synthesis_pb2  # noqa: E402
-
-# All visible controls, as [name, width, height].
-TARGETS = """[...document.querySelectorAll(
-        'button, select, input:not([type=file]), summary, .button')]
-    .filter((item) => item.offsetParent !== null)
-    .map((item) => [item.id || item.name || item.textContent.trim(),
-                    item.getBoundingClientRect().width, item.getBoundingClientRect().height])"""
-# Fields without an accessible name.
-NAMELESS = """[...document.querySelectorAll('input, select, textarea, button')].filter((item) =>
-    !(item.labels?.length || item.getAttribute('aria-label') || item.textContent.trim()))
-    .map((item) => item.outerHTML)"""
 
 
 class WebTest(StudioTest):
@@ -110,13 +99,12 @@ class WebTest(StudioTest):
         lines = re.sub("Frames: .*", "Frames: 1", tools.sample("hug").read_text("utf-8")).split("\n")
         first = next(i for i, line in enumerate(lines) if line.startswith("Frame Time: ")) + 1
         text = "\n".join([*lines[:first + 1], ""])
-        page.evaluate(f"attempt(takeFile)(new File([{json.dumps(text)}], 'pose.bvh'))")
-        self.assertEqual(page.text("#status"), "pose.bvh: expected a motion of at least 2 frames, got 1. "
+        self.assertEqual(self.open_text(page, text, "pose.bvh"), "pose.bvh: expected a motion of at least 2 frames, got 1. "
                                                "A single pose has no reaction.")
         self.assertIsNone(page.evaluate("state.leader"))
 
     def test_scene_keeps_its_height_with_everything_open(self):
-        page = self.open_still("#leader=hug.bvh&labels=hug:1", width=1280, height=720)
+        page = self.open_still(HUG, width=1280, height=720)
         self.press(page, "show-eight")
         page.evaluate("element('curves').open = element('pins').open = true")
         page.next_frame()
@@ -128,7 +116,7 @@ class WebTest(StudioTest):
     def test_react_is_on_the_screen_of_a_phone_held_sideways(self):
         for width, height in ((667, 375), (844, 390), (915, 412)):
             with self.subTest(width=width):
-                page = self.open_still("#leader=hug.bvh&labels=hug:1", width=width, height=height)
+                page = self.open_still(HUG, width=width, height=height)
                 box = page.evaluate("(({left, top, right, bottom}) => [left, top, right, bottom])("
                                     "element('react').getBoundingClientRect())")
                 self.assertTrue(0 <= box[0] < box[2] <= width and 0 <= box[1] < box[3] <= height, box)
@@ -178,7 +166,7 @@ class WebTest(StudioTest):
     def test_both_people_are_visible(self):
         for width, height in ((1000, 700), (375, 720)):
             with self.subTest(width=width):
-                page = self.open_still("#leader=hug.bvh&labels=hug:1", width=width, height=height)
+                page = self.open_still(HUG, width=width, height=height)
                 self.react(page)
                 drawn = page.state()["draws"]
                 page.evaluate("seekAll(45)")
@@ -191,15 +179,11 @@ class WebTest(StudioTest):
                 self.assertTrue(page.evaluate("element('empty').hidden"))
 
     def test_every_control_works_on_a_phone_and_by_keyboard(self):
-        page = self.open_still("#leader=hug.bvh&labels=hug:1", width=375, height=720)
+        page = self.open_still(HUG, width=375, height=720)
         page.evaluate("for (const part of document.querySelectorAll('details')) part.open = true")
         self.press(page, "show-eight")
         page.evaluate("setPoint(settings, 'hug', 30, 1); changed('test'); timeline.select('hug', 30)")
-        self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), 375)
-        for what, width, height in page.evaluate(TARGETS):
-            self.assertGreaterEqual(height, 40, what)
-            self.assertGreaterEqual(width, 40, what)
-        self.assertEqual(page.evaluate(NAMELESS), [])
+        self.check_controls(page, "button, select, input:not([type=file]), summary, .button")
         reached = set()
         for _ in range(160):
             page.call("Input.dispatchKeyEvent", type="keyDown", key="Tab", windowsVirtualKeyCode=9)
@@ -221,26 +205,21 @@ class WebTest(StudioTest):
     def test_downloads_match_the_view_and_are_named_after_the_settings(self):
         page = self.open_still("#leader=hug.bvh&labels=hug:1,push:0.5&seed=3&model=sbu@3")
         self.react(page)
-        page.evaluate("""window.bodies = [];
-          const fetched = window.fetch;
-          window.fetch = async (...all) => {
-            const response = await fetched(...all);
-            window.bodies.push(await response.clone().text());
-            return response;
-          }; undefined""")
-        page.evaluate("download('json')")
         name = "hug_sbu@3_hug1_push0.5_seed3"
-        self.assertEqual(page.state()["downloaded"], f"{name}.json")
-        pair = json.loads(page.evaluate("window.bodies.pop()"))
-        np.testing.assert_allclose(np.ravel(pair["follower"]), page.evaluate(FOLLOWER), atol=1e-6)
-        page.evaluate("download('bvh')")
-        self.assertEqual(page.state()["downloaded"], f"{name}.zip")
-        self.set(page, "[name=resample]", 60)
         page.evaluate("download('json')")
-        self.assertEqual(json.loads(page.evaluate("window.bodies.pop()"))["frame_rate_hz"], 60)
-        page.evaluate("downloadOnRig()")
-        self.assertEqual(page.state()["downloaded"], f"{name}.follower.bvh")
-        rig = page.evaluate("window.bodies.pop()")
+        self.assertEqual(page.state()["downloaded"], f"{name}.json")
+
+        def saved(act):
+            file, text = self.saved(page, lambda: page.evaluate(act))
+            self.assertTrue(file.startswith(f"{name}."), file)
+            return file[len(name):], text
+        pair = json.loads(saved("download('json')")[1])
+        np.testing.assert_allclose(np.ravel(pair["follower"]), page.evaluate(FOLLOWER), atol=1e-6)
+        self.assertEqual(saved("download('bvh')")[0], ".zip")
+        self.set(page, "[name=resample]", 60)
+        self.assertEqual(json.loads(saved("download('json')")[1])["frame_rate_hz"], 60)
+        file, rig = saved("downloadOnRig()")
+        self.assertEqual(file, ".follower.bvh")
         self.assertEqual(re.findall(r"(?:ROOT|JOINT) \S+", rig), re.findall(
             r"(?:ROOT|JOINT) \S+", tools.sample("hug").read_text(encoding="utf-8")))
         # Settings that were changed after the answer do not change the name.
