@@ -6,21 +6,15 @@ protocol. Positions are those of Unity: left-handed, y up, metres.
 
 import json
 import math
+import pathlib
 import struct
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import frames  # noqa: E402
 
 # Bone, parent, offset in Unity's axes: the left hand is at -x.
-BONES = (
-    ("Hips", None, (0, 0.95, 0)), ("Spine", "Hips", (0, 0.1, 0)), ("Chest", "Spine", (0, 0.13, 0)),
-    ("UpperChest", "Chest", (0, 0.12, 0)), ("Neck", "UpperChest", (0, 0.15, 0)),
-    ("Head", "Neck", (0, 0.09, 0)), ("LeftShoulder", "UpperChest", (-0.04, 0.11, 0)),
-    ("LeftUpperArm", "LeftShoulder", (-0.13, 0, 0)), ("LeftLowerArm", "LeftUpperArm", (-0.28, 0, 0)),
-    ("LeftHand", "LeftLowerArm", (-0.25, 0, 0)), ("RightShoulder", "UpperChest", (0.04, 0.11, 0)),
-    ("RightUpperArm", "RightShoulder", (0.13, 0, 0)),
-    ("RightLowerArm", "RightUpperArm", (0.28, 0, 0)), ("RightHand", "RightLowerArm", (0.25, 0, 0)),
-    ("LeftUpperLeg", "Hips", (-0.09, -0.05, 0)), ("LeftLowerLeg", "LeftUpperLeg", (0, -0.42, 0)),
-    ("LeftFoot", "LeftLowerLeg", (0, -0.41, 0)), ("LeftToes", "LeftFoot", (0, -0.05, 0.13)),
-    ("RightUpperLeg", "Hips", (0.09, -0.05, 0)), ("RightLowerLeg", "RightUpperLeg", (0, -0.42, 0)),
-    ("RightFoot", "RightLowerLeg", (0, -0.41, 0)), ("RightToes", "RightFoot", (0, -0.05, 0.13)))
+BONES = tuple((bone, parent, (-x, y, z)) for bone, parent, (x, y, z) in frames.BONES)
 
 XSENS = ("Hips", "Spine", "Spine", "Chest", "UpperChest", "Neck", "Head", "RightShoulder",
          "RightUpperArm", "RightLowerArm", "RightHand", "LeftShoulder", "LeftUpperArm",
