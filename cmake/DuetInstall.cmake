@@ -12,16 +12,15 @@ set(DUET_SYSUSERS_DIR lib/sysusers.d CACHE STRING "Folder of the user that the s
 mark_as_advanced(DUET_SYSTEMD_UNIT_DIR DUET_SYSUSERS_DIR)
 
 set(deploy ${PROJECT_SOURCE_DIR}/deploy)
-install(FILES ${deploy}/debian/duet-server.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8
-  COMPONENT server)
+duet_manual_page(duet-server 8 server "synthesise the motion with which one character reacts to another, over gRPC")
+duet_manual_page(duet-import 1 training "convert a folder of motion files of two people to a training set")
+duet_manual_page(duet-keyframe 1 training "make a BVH clip from a hand-written key-frame file")
 set(training_programs duet-import duet-keyframe)
 if(DUET_TRAINING)
   list(APPEND training_programs duet-train duet-eval)
+  duet_manual_page(duet-train 1 training "train a generator on a folder of captures and write a checkpoint")
+  duet_manual_page(duet-eval 1 training "evaluate trained models and baselines on captures")
 endif()
-foreach(program IN LISTS training_programs)
-  install(FILES ${deploy}/debian/${program}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
-    COMPONENT training)
-endforeach()
 install(FILES ${deploy}/systemd/duet-server.service DESTINATION ${DUET_SYSTEMD_UNIT_DIR}
   COMPONENT server)
 install(FILES ${deploy}/systemd/duet-server.sysusers RENAME duet-server.conf

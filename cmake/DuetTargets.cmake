@@ -107,6 +107,24 @@ function(duet_script_test)
     ENVIRONMENT "DUET_SOURCE_DIR=${PROJECT_SOURCE_DIR};DUET_BIN_DIR=${CMAKE_BINARY_DIR}/bin;PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/e2e")
 endfunction()
 
+# duet_manual_page(program section component summary [command]): installs a manual page, which is the program's help.
+find_program(HELP2MAN help2man)
+mark_as_advanced(HELP2MAN)
+function(duet_manual_page program section component summary)
+  if(NOT HELP2MAN OR CMAKE_CROSSCOMPILING)
+    return()
+  endif()
+  list(JOIN ARGN "" command)
+  string(JOIN "-" name ${program} ${command})
+  set(page ${CMAKE_CURRENT_BINARY_DIR}/${name}.${section})
+  add_custom_command(OUTPUT ${page}
+    COMMAND ${HELP2MAN} --no-info --section=${section} "--version-string=${name} ${PROJECT_VERSION}"
+            "--name=${summary}" --output=${page} "$<TARGET_FILE:${program}> ${command}"
+    DEPENDS ${program} VERBATIM)
+  add_custom_target(duet_page_${name} ALL DEPENDS ${page})
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} COMPONENT ${component})
+endfunction()
+
 # duet_embed_file(TARGET symbol path...): links the bytes of a file, or of several one after the other, into TARGET as
 #   extern "C" const unsigned char <symbol>[], <symbol>_end[];
 function(duet_embed_file target symbol)

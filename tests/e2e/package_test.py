@@ -46,13 +46,12 @@ class PackageTest(tools.FolderTest):
             needed = run("dpkg-deb", "-f", package, "Depends")
             self.assertEqual("libgrpc++1.51" in needed, name in ("duet", "duet-server"), name)
             self.assertEqual("libtorch" in needed, name == "duet-training", name)
-        for path in ("usr/bin/duet",
-                     *(["usr/share/man/man1/duet-synthesize.1.gz"] if shutil.which("help2man") else []),
-                     "usr/bin/duet-server", "usr/share/man/man8/duet-server.8.gz",
+        pages = ("man1/duet-synthesize.1.gz", "man1/duet-train.1.gz", "man8/duet-server.8.gz")
+        for path in (*(f"usr/share/man/{page}" for page in pages if shutil.which("help2man")), "usr/bin/duet",
+                     "usr/bin/duet-server",
                      "usr/lib/systemd/system/duet-server.service",
                      "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto",
-                     "usr/bin/duet-train", "usr/share/man/man1/duet-train.1.gz",
-                     "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe",
+                     "usr/bin/duet-train", "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe",
                      "usr/lib/duet/libduet_torch_engine.so"):
             self.assertTrue((self.root / path).is_file(), path)
         for name in self.packages:
