@@ -96,7 +96,7 @@ function(duet_script_test)
   set(labels e2e)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${A_NAME}.py)
   file(STRINGS ${A_NAME}.py starts
-       REGEX "tools\\.(Server\\(|running_server\\(|ServedTest)|(StudioTest|PageTest|GuideTest)\\)|LoggingServer\\(|(wire|live)_fuzzer")
+       REGEX "tools\\.(Server\\(|running_server\\(|ServedTest)|(Studio|Page|Gateway|Guide)Test\\)|LoggingServer\\(|(wire|live)_fuzzer")
   if(starts)
     list(APPEND labels server)
   endif()

@@ -3,20 +3,18 @@ requests of all visitors over the same connections: what one sends must never an
 
 import base64
 import contextlib
-import os
 import pathlib
 import shutil
 import socket
 import ssl
-import subprocess
 import tempfile
 import unittest
 
 import gateways
+import proxies
 import tools
 from gateways import GRPC_WEB, Gateway, answers, framed, message_of, post, read_all
 from gateway_test import AMBIGUOUS, HIDDEN, LARGEST
-from proxies import certificate
 
 PASSWORD = "open sesame"
 ALLOWED = {"Authorization": "Basic " + base64.b64encode(f"duet:{PASSWORD}".encode()).decode()}
@@ -37,7 +35,7 @@ class GatewayProxyTest(unittest.TestCase):
         stack = contextlib.ExitStack()
         cls.addClassCleanup(stack.close)
         cls.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        certificate(cls.folder)
+        proxies.certificate(cls.folder)
         server = stack.enter_context(tools.running_server())
         gateway = Gateway(server.address)
         stack.callback(gateway.stop)
@@ -162,28 +160,15 @@ class GatewayProxyTest(unittest.TestCase):
 def haproxy(folder, port, gateway_port, **environment):
     """HAProxy in front of a gateway; yields when it listens."""
     digest = tools.run("openssl", "passwd", "-5", PASSWORD).stdout.strip()
-    with open(folder / "web.log", "w", encoding="utf-8") as log:
-        process = subprocess.Popen(
-            ["haproxy", "-f", tools.SOURCE / "contrib/studio/haproxy.cfg"], stdout=log, stderr=log,
-            env={**os.environ, "DUET_WEB_BIND": f"127.0.0.1:{port}",
-                 "DUET_WEB_CERTIFICATE": str(folder / "proxy.pem"),
-                 "DUET_WEB_PASSWORD_HASH": digest,
-                 "DUET_WEB_GATEWAY": f"127.0.0.1:{gateway_port}", **environment})
 
-        def listens():
-            assert process.poll() is None, (folder / "web.log").read_text(encoding="utf-8")
-            with socket.socket() as probe:
-                return probe.connect_ex(("127.0.0.1", port)) == 0
-        try:
-            tools.wait_until(listens, "haproxy to listen")
-            yield
-        finally:
-            process.terminate()
-            try:
-                process.wait(timeout=tools.STOP_SECONDS)
-            finally:
-                process.kill()
-                process.wait(timeout=tools.STOP_SECONDS)
+    def listens():
+        with socket.socket() as probe:
+            return probe.connect_ex(("127.0.0.1", port)) == 0
+    with proxies.Proxy(folder, port, "haproxy", "-f", tools.SOURCE / "contrib/studio/haproxy.cfg",
+                       DUET_WEB_BIND=f"127.0.0.1:{port}", DUET_WEB_CERTIFICATE=str(folder / "proxy.pem"),
+                       DUET_WEB_PASSWORD_HASH=digest, DUET_WEB_GATEWAY=f"127.0.0.1:{gateway_port}", **environment):
+        tools.wait_until(listens, "haproxy to listen")
+        yield
 
 
 if __name__ == "__main__":

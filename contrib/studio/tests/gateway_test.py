@@ -62,18 +62,7 @@ AMBIGUOUS = {
 }
 
 
-class GatewayTest(tools.ServedTest):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.gateway = Gateway(cls.server.address)
-        cls.addClassCleanup(cls.gateway.stop)
-
-    def started(self, *flags, bounds=""):
-        gateway = Gateway(self.server.address, *flags, bounds=bounds)
-        self.addCleanup(gateway.stop)
-        return gateway
-
+class GatewayTest(gateways.GatewayTest):
     def ask(self, path, body=b"", gateway=None, **headers):
         """Status, headers and body of the only answer to a POST."""
         [answer] = ask_raw((gateway or self.gateway).port, post(path, body, **headers))

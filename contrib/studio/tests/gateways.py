@@ -44,7 +44,7 @@ class Gateway:
 
     def __init__(self, server, *flags, bounds=""):
         program = (f"import sys; sys.path.insert(0, {str(WEB)!r})\n"
-                   f"import gateway, serving, uploads, conversions\n"
+                   f"import gateway, serving, uploads, conversions, live_socket\n"
                    f"{SANITIZED_BOUNDS}\n{bounds}\n"
                    "sys.exit(gateway.main(sys.argv[1:]))")
         self.log = []
@@ -75,6 +75,22 @@ class Gateway:
             self._process.kill()
             self._process.wait(tools.STOP_SECONDS)
             self._process.stdout.close()
+
+
+class GatewayTest(tools.ServedTest):
+    """Tests that share a server and a gateway in front of it."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.gateway = Gateway(cls.server.address)
+        cls.addClassCleanup(cls.gateway.stop)
+
+    def started(self, *flags, bounds=""):
+        """Another gateway in front of the server."""
+        gateway = Gateway(self.server.address, *flags, bounds=bounds)
+        self.addCleanup(gateway.stop)
+        return gateway
 
 
 def connect(port):

@@ -65,18 +65,11 @@ def frames_message(leader, first, count=1):
     )).SerializeToString()
 
 
-class LiveSocketTest(tools.ServedTest):
+class LiveSocketTest(gateways.GatewayTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.gateway = Gateway(cls.server.address)
-        cls.addClassCleanup(cls.gateway.stop)
         cls.leader = duet.read_motion(tools.sample("hug"))
-
-    def started(self, bounds="", *flags):
-        gateway = Gateway(self.server.address, *flags, bounds=f"import live_socket\n{bounds}")
-        self.addCleanup(gateway.stop)
-        return gateway
 
     def session(self, talk, gateway=None):
         """Runs `talk(socket)` on a WebSocket of a browser."""
@@ -198,28 +191,28 @@ class LiveSocketTest(tools.ServedTest):
         self.works()
 
     def test_flood_of_messages_is_ended(self):
-        gateway = self.started("live_socket.MAX_MESSAGES_PER_SECOND = 20")
+        gateway = self.started(bounds="live_socket.MAX_MESSAGES_PER_SECOND = 20")
         leader = start_message(self.leader)
         data = frame(BINARY, leader) + b"".join(
             frame(BINARY, frames_message(self.leader, first)) for first in range(90))
         self.assertEqual(self.closed_by(data, gateway)[0], 1008)
 
     def test_silence_ends_the_session(self):
-        gateway = self.started("live_socket.SILENCE_SECONDS = 0.3")
+        gateway = self.started(bounds="live_socket.SILENCE_SECONDS = 0.3")
         self.assertEqual(self.closed_by(b"", gateway),
                          (1008, "expected a message within 0.3 s, got none"))
         leader = start_message(self.leader)
         self.assertEqual(self.closed_by(frame(BINARY, leader), gateway)[0], 1008)
 
     def test_browser_that_does_not_answer_pings_is_gone(self):
-        gateway = self.started("live_socket.PING_SECONDS = 2")
+        gateway = self.started(bounds="live_socket.PING_SECONDS = 2")
         with connect(gateway.port) as browser:
             browser.sendall(handshake())
             tools.wait_until(lambda: browser.recv(4096) == b"", "the gateway to hang up")
         self.works(gateway)
 
     def test_browser_that_does_not_read_is_cut_off(self):
-        gateway = self.started("live_socket.SEND_SECONDS = 0.5; live_socket.PING_SECONDS = 60")
+        gateway = self.started(bounds="live_socket.SEND_SECONDS = 0.5; live_socket.PING_SECONDS = 60")
         before = gateway.peak_mebibytes()
         with socket.socket() as browser:
             browser.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
@@ -237,7 +230,7 @@ class LiveSocketTest(tools.ServedTest):
         self.works(gateway)
 
     def test_half_open_browsers_leave_nothing_behind(self):
-        gateway = self.started("live_socket.MAX_SESSIONS = 3; live_socket.PING_SECONDS = 2")
+        gateway = self.started(bounds="live_socket.MAX_SESSIONS = 3; live_socket.PING_SECONDS = 2")
         for _ in range(3):
             with connect(gateway.port) as browser:
                 browser.sendall(handshake())
@@ -255,7 +248,7 @@ class LiveSocketTest(tools.ServedTest):
         return True
 
     def test_sessions_are_counted(self):
-        gateway = self.started("live_socket.MAX_SESSIONS = 2")
+        gateway = self.started(bounds="live_socket.MAX_SESSIONS = 2")
         with contextlib.ExitStack() as stack:
             for _ in range(2):
                 browser = stack.enter_context(connect(gateway.port))
@@ -268,7 +261,7 @@ class LiveSocketTest(tools.ServedTest):
         tools.wait_until(lambda: self.has_room(gateway), "the sessions to end")
 
     def test_session_outlasts_the_time_limit_of_requests(self):
-        gateway = self.started("serving.REQUEST_SECONDS = 0.5")
+        gateway = self.started(bounds="serving.REQUEST_SECONDS = 0.5")
 
         async def talk(browser):
             await browser.send_bytes(start_message(self.leader))
