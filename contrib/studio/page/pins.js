@@ -76,7 +76,7 @@ const jointText = (joint) => joint.replaceAll('_', ' ');
 class PinHandles {
   // `onChange(what)` is called after each change, `onEnd()` after each drag.
   constructor(svg, list, onChange, onEnd) {
-    Object.assign(this, {svg, list, onChange, onEnd, handles: new Map(), rows: [], held: null});
+    Object.assign(this, {svg, list, onChange, onEnd, handles: new Map(), rows: []});
     svg.addEventListener('keydown', (event) => this.key(event));
   }
 
@@ -130,28 +130,16 @@ class PinHandles {
   }
 
   connect(grip, joint) {
-    grip.addEventListener('pointerdown', (event) => {
-      const place = this.handlePlace(joint);
-      if (!place || event.button !== 0) return;
+    let [place, off] = [null, null];
+    connectDrag(grip, (event) => {
+      place = this.handlePlace(joint);
+      if (!place) return false;
       if (theatre.player.playing) theatre.pause();
       const at = this.at(event, place);
-      this.held = {joint, place, off: place.map((value, i) => value - at[i])};
-      grip.setPointerCapture(event.pointerId);
+      off = place.map((value, i) => value - at[i]);
       grip.focus();
-      event.preventDefault();
-      event.stopPropagation();
-    });
-    grip.addEventListener('pointermove', (event) => {
-      if (this.held?.joint !== joint) return;
-      const at = this.at(event, this.held.place);
-      this.pin(joint, at.map((value, i) => value + this.held.off[i]));
-    });
-    for (const kind of ['pointerup', 'pointercancel']) {
-      grip.addEventListener(kind, () => {
-        if (this.held) this.onEnd();
-        this.held = null;
-      });
-    }
+      return true;
+    }, (event) => this.pin(joint, this.at(event, place).map((value, i) => value + off[i])), () => this.onEnd());
   }
 
   key(event) {

@@ -56,6 +56,35 @@ function seekAll(frame) {
   theatre.seek(frame);
 }
 
+const SVG = 'http://www.w3.org/2000/svg';
+
+function svgItem(kind, attributes) {
+  const item = document.createElementNS(SVG, kind);
+  for (const [name, value] of Object.entries(attributes)) item.setAttribute(name, value);
+  return item;
+}
+
+// Lets an item over the scene be dragged. `hold(event)` returns whether the pointer takes hold of it.
+function connectDrag(item, hold, move, drop) {
+  let isHeld = false;
+  item.addEventListener('pointerdown', (event) => {
+    isHeld = event.button === 0 && hold(event);
+    if (!isHeld) return;
+    item.setPointerCapture(event.pointerId);
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  item.addEventListener('pointermove', (event) => {
+    if (isHeld) move(event);
+  });
+  for (const kind of ['pointerup', 'pointercancel']) {
+    item.addEventListener(kind, () => {
+      if (isHeld) drop();
+      isHeld = false;
+    });
+  }
+}
+
 // Calls `follow` after each redraw.
 function connectStage(follow) {
   theatre.addEventListener('drawn', () => {

@@ -8,7 +8,6 @@ const ARROW_METRES = 0.55;
 const STEP_METRES = 0.05;
 const STEP_DEGREES = 5;
 const FIRST_DISTANCE = 1;  // metres in front of the leader, where nothing else is known
-const SVG = 'http://www.w3.org/2000/svg';
 
 const radians = (degrees) => degrees * Math.PI / 180;
 const rounded = (value, digits = 3) => Number(value.toFixed(digits)) + 0;
@@ -117,13 +116,7 @@ class StartMarker {
   }
 
   add(kind, name, label) {
-    const item = document.createElementNS(SVG, kind);
-    item.setAttribute('class', name);
-    if (label) {
-      item.setAttribute('tabindex', 0);
-      item.setAttribute('role', 'button');
-      item.setAttribute('aria-label', label);
-    }
+    const item = svgItem(kind, {class: name, ...(label && {tabindex: 0, role: 'button', 'aria-label': label})});
     this.svg.append(item);
     return item;
   }
@@ -135,30 +128,19 @@ class StartMarker {
   }
 
   connect(item, move) {
-    let held = false;
-    item.addEventListener('pointerdown', (event) => {
+    connectDrag(item, (event) => {
       const at = this.floorBelow(event);
-      if (!at || event.button !== 0) return;
+      if (!at) return false;
       const {root} = startNow(state.leader);
       this.grip = [at[0] - root[0], at[1] - root[2]];
-      held = true;
-      item.setPointerCapture(event.pointerId);
       item.focus();
-      event.preventDefault();
-      event.stopPropagation();
-    });
-    item.addEventListener('pointermove', (event) => {
-      const at = held && this.floorBelow(event);
+      return true;
+    }, (event) => {
+      const at = this.floorBelow(event);
       if (!at) return;
       move(at);
       this.onChange();
-    });
-    for (const kind of ['pointerup', 'pointercancel']) {
-      item.addEventListener(kind, () => {
-        if (held) this.onEnd();
-        held = false;
-      });
-    }
+    }, () => this.onEnd());
   }
 
   key(event) {

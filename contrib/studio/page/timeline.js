@@ -76,12 +76,6 @@ const WEIGHT_STEP = 0.05;
 // A weight as the sliders step it.
 const stepped = (weight) => rounded(Math.round(weight / WEIGHT_STEP) * WEIGHT_STEP, 2);
 
-function svgItem(kind, attributes) {
-  const item = document.createElementNS(SVG, kind);
-  for (const [name, value] of Object.entries(attributes)) item.setAttribute(name, value);
-  return item;
-}
-
 class Lane {
   // Calls `owner.select(name, frame)` and `owner.changed(name)`.
   constructor(name, owner) {
@@ -222,9 +216,8 @@ class Lane {
       const box = svg.getBoundingClientRect();
       return [event.clientX - box.left, event.clientY - box.top];
     };
-    svg.addEventListener('pointerdown', (event) => {
-      if (event.button !== 0 || !this.width) return;
-      event.preventDefault();
+    connectDrag(svg, (event) => {
+      if (!this.width) return false;
       const [x, y] = place(event);
       this.held = this.pointAt(event, x, y);
       if (this.held === null) {
@@ -235,21 +228,16 @@ class Lane {
         this.focus(this.held);
       }
       this.from = [x, y];
-      svg.setPointerCapture(event.pointerId);
-    });
-    svg.addEventListener('pointermove', (event) => {
-      if (this.held === null) return;
+      return true;
+    }, (event) => {
       const [x, y] = place(event);
       if (this.from && Math.hypot(x - this.from[0], y - this.from[1]) < 3) return;
       this.from = null;
       this.held = this.move(this.held, this.frameAt(x), this.weightAtPixel(y));
+    }, () => {
+      this.held = null;
+      this.owner.ended();
     });
-    for (const kind of ['pointerup', 'pointercancel']) {
-      svg.addEventListener(kind, () => {
-        this.held = null;
-        this.owner.ended();
-      });
-    }
     svg.addEventListener('contextmenu', (event) => {
       const frame = this.pointAt(event, ...place(event));
       if (frame === null) return;
