@@ -9,17 +9,13 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
-#include "absl/status/status.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "duet/admin/v1/admin.pb.h"
 #include "model/base/text.h"
 #include "server/common/error_details.h"
 #include "server/registry/model_repository.h"
-#include "server/registry/model_status.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::admin {
@@ -29,16 +25,16 @@ namespace v1 = ::duet::admin::v1;
 
 constexpr std::size_t kLongestLabel = 63;
 
-// Collects the violations of a request: fields that are missing, and labels that are not 1 to 63
-// letters, digits, '-', '_' and '.'.
+// Checks the fields of a request: none is missing, and labels are 1 to 63 letters, digits, '-', '_'
+// and '.'.
 class Fields {
  public:
   Fields& Name(const std::string& name) {
-    if (name.empty()) Add("name", "expected a model's name, got none");
+    if (name.empty()) violations_.Malformed("name", "a model's name", "none");
     return *this;
   }
   Fields& Version(uint32_t version) {
-    if (version == 0) Add("version", "expected a version of 1 or more, got none");
+    if (version == 0) violations_.Malformed("version", "a version of 1 or more", "none");
     return *this;
   }
   Fields& Label(const std::string& label) {
@@ -46,26 +42,15 @@ class Fields {
       return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.';
     });
     if (plain && !label.empty() && label.size() <= kLongestLabel) return *this;
-    Add("label", absl::StrCat("expected 1 to ", kLongestLabel,
-                              " letters, digits, '-', '_' and '.', got ", base::Quoted(label)));
+    violations_.Malformed(
+        "label", absl::StrCat("1 to ", kLongestLabel, " letters, digits, '-', '_' and '.'"),
+        base::Quoted(label));
     return *this;
   }
-
-  absl::Status status() const {
-    if (violations_.empty()) return absl::OkStatus();
-    absl::Status status = absl::InvalidArgumentError(absl::StrJoin(
-        violations_, "; ", [](std::string* out, const common::FieldViolation& violation) {
-          absl::StrAppend(out, violation.field, ": ", violation.description);
-        }));
-    common::AddBadRequest(status, violations_);
-    return status;
-  }
+  absl::Status status() const { return violations_.ToStatus(); }
 
  private:
-  void Add(std::string field, std::string description) {
-    violations_.push_back({std::move(field), std::move(description)});
-  }
-  std::vector<common::FieldViolation> violations_;
+  service::Violations violations_;
 };
 
 v1::ModelState ToMessage(registry::ModelState state) {
@@ -169,7 +154,8 @@ class AdminService::Call {
     const metrics::CallRecord& record = opened_.scope->record();
     log_.Audit({record.caller, record.peer, record.request_id, std::string(record.method.name),
                 arguments_, reported});
-    service::CallPipeline::Close(*opened_.scope, reported, context_, reactor_);
+    service::CallPipeline::Report(*opened_.scope, reported, context_);
+    reactor_.Finish(common::ToGrpcStatus(reported));
   }
 
  private:
@@ -200,6 +186,10 @@ grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& contex
   return call->reactor();
 }
 
+absl::Status AdminService::IfServing(const absl::Status& valid) const {
+  return valid.ok() ? parts_.admission->CheckServing() : valid;
+}
+
 grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* context,
                                                    const v1::ListModelsRequest* request,
                                                    v1::ListModelsResponse* response) {
@@ -214,10 +204,8 @@ grpc::ServerUnaryReactor* AdminService::LoadModel(grpc::CallbackServerContext* c
                                                   const v1::LoadModelRequest* request,
                                                   v1::LoadModelResponse*) {
   return Open(*context, kLoadModel, *request,
-              Fields().Name(request->name()).Version(request->version()).status(),
+              IfServing(Fields().Name(request->name()).Version(request->version()).status()),
               [&](const auto& call) {
-                const absl::Status serving = parts_.admission->CheckServing();
-                if (!serving.ok()) return call->Finish(serving);
                 parts_.control->Load(request->name(), request->version(),
                                      [call](const absl::Status& status) { call->Finish(status); });
               });
@@ -226,22 +214,19 @@ grpc::ServerUnaryReactor* AdminService::LoadModel(grpc::CallbackServerContext* c
 grpc::ServerUnaryReactor* AdminService::UnloadModel(grpc::CallbackServerContext* context,
                                                     const v1::UnloadModelRequest* request,
                                                     v1::UnloadModelResponse*) {
-  return Open(
-      *context, kUnloadModel, *request,
-      Fields().Name(request->name()).Version(request->version()).status(), [&](const auto& call) {
-        const absl::Status serving = parts_.admission->CheckServing();
-        if (!serving.ok()) return call->Finish(serving);
-        parts_.control->Unload(request->name(), request->version(),
-                               [call](const absl::Status& status) { call->Finish(status); });
-      });
+  return Open(*context, kUnloadModel, *request,
+              IfServing(Fields().Name(request->name()).Version(request->version()).status()),
+              [&](const auto& call) {
+                parts_.control->Unload(
+                    request->name(), request->version(),
+                    [call](const absl::Status& status) { call->Finish(status); });
+              });
 }
 
 grpc::ServerUnaryReactor* AdminService::Reload(grpc::CallbackServerContext* context,
                                                const v1::ReloadRequest* request,
                                                v1::ReloadResponse* response) {
-  return Open(*context, kReload, *request, absl::OkStatus(), [&](const auto& call) {
-    const absl::Status serving = parts_.admission->CheckServing();
-    if (!serving.ok()) return call->Finish(serving);
+  return Open(*context, kReload, *request, IfServing(absl::OkStatus()), [&](const auto& call) {
     // The response lives until the call ends.
     parts_.control->Reload([call, response](const absl::StatusOr<registry::ReloadReport>& report) {
       if (report.ok()) *response = ToMessage(*report);

@@ -9,7 +9,7 @@
 #include "server/common/clock.h"
 #include "server/metrics/call_record.h"
 #include "server/metrics/json_log.h"
-#include "server/registry/model_control.h"
+#include "server/registry/model_manager.h"
 #include "server/security/call_guard.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
@@ -66,6 +66,8 @@ class AdminService final : public v1::Admin::CallbackService {
   grpc::ServerUnaryReactor* Open(grpc::CallbackServerContext& context,
                                  const metrics::MethodInfo& method, const Request& request,
                                  const absl::Status& valid, const Answer& answer);
+  // `valid`, or UNAVAILABLE while the server does not serve.
+  absl::Status IfServing(const absl::Status& valid) const;
 
   const AdminParts parts_;
   const service::CallPipeline pipeline_;

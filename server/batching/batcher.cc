@@ -1,4 +1,3 @@
-#include "server/batching/batcher.h"
 
 #include <atomic>
 #include <chrono>
@@ -69,11 +68,6 @@ Results Evaluate(const Batch& batch) {
   return each;
 }
 
-WindowQueueOptions QueueOptions(const BatcherOptions& options) {
-  return {static_cast<std::size_t>(options.max_queued_windows), options.workers, options.limits,
-          options.client_share};
-}
-
 class Batcher final : public WindowScheduler {
  public:
   Batcher(const BatcherOptions& options, const common::Clock& clock, WindowObserver* observer);
@@ -105,7 +99,7 @@ class Batcher final : public WindowScheduler {
 
 Batcher::Batcher(const BatcherOptions& options, const common::Clock& clock,
                  WindowObserver* observer)
-    : clock_(clock), observer_(observer), queue_(QueueOptions(options)) {
+    : clock_(clock), observer_(observer), queue_(options) {
   for (int i = 0; i < options.workers; ++i) workers_.emplace_back([this] { Work(); });
 }
 

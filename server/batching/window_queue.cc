@@ -51,7 +51,7 @@ bool WindowQueue::HasRoomFor(const WindowJob& job, TimePoint now) const {
 
 bool WindowQueue::HasRoomFor(Priority priority, const std::string& client, TimePoint now,
                              int candidates) const {
-  const std::size_t most = ShareOf(options_.capacity, priority);
+  const std::size_t most = ShareOf(capacity(), priority);
   std::size_t taken = 0, held = 0;
   for (const QueuedWindow& window : waiting_) {
     const WindowJob& job = window.job;

@@ -10,11 +10,23 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "server/batching/batch_cost.h"
 #include "server/batching/batch_decision.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/clock.h"
 
 namespace duet::server::batching {
+
+struct BatcherOptions {
+  int workers = 1;
+  // Maximum number of first windows of calls that wait, each counted once for each candidate. A
+  // single call may wait whatever it costs.
+  int max_queued_windows = 1;
+  BatchLimits limits;
+  // Fraction of max_queued_windows that a single client can fill, in (0, 1]. A client may queue
+  // another call while its waiting calls take less than client_share / (1 - client_share) times the
+  // free room.
+  double client_share = 1;
+};
 
 // A job, its time of arrival, and what it costs.
 struct QueuedWindow {
@@ -54,18 +66,6 @@ struct Turn {
   common::TimePoint look_again = common::TimePoint::max();
 };
 
-struct WindowQueueOptions {
-  // Maximum number of first windows of calls that wait, each counted once for each candidate. A
-  // single call may wait whatever it costs.
-  std::size_t capacity = 1;
-  int workers = 1;
-  BatchLimits limits;
-  // Fraction of the capacity that a single client can fill, in (0, 1]. A client may queue another
-  // call while its waiting calls take less than client_share / (1 - client_share) times the free
-  // room.
-  double client_share = 1;
-};
-
 // The waiting windows, and the history that Decide needs: running batches, the computing time that
 // each model has used, the cost of its batches, and the turns that clients have had.
 //
@@ -76,7 +76,7 @@ struct WindowQueueOptions {
 // Threads: not safe to call concurrently.
 class WindowQueue {
  public:
-  explicit WindowQueue(const WindowQueueOptions& options) : options_(options) {}
+  explicit WindowQueue(const BatcherOptions& options) : options_(options) {}
 
   // Returns true if the first window of a call may join: with it, the waiting first windows of all
   // priorities fit into this priority's share of the capacity, and those of its client are below
@@ -101,7 +101,7 @@ class WindowQueue {
   std::size_t size() const { return waiting_.size(); }
   // Of all waiting windows.
   std::size_t candidates() const;
-  std::size_t capacity() const { return options_.capacity; }
+  std::size_t capacity() const { return static_cast<std::size_t>(options_.max_queued_windows); }
 
  private:
   // The history of a model.
@@ -135,7 +135,7 @@ class WindowQueue {
   void CountOvertaking(const Batch& batch);
   void Start(Batch& batch, common::TimePoint now);
 
-  const WindowQueueOptions options_;
+  const BatcherOptions options_;
   std::vector<QueuedWindow> waiting_;  // in order of arrival
   std::map<const engine::Synthesizer*, Account> accounts_;
   struct Running {
@@ -154,6 +154,16 @@ class WindowQueue {
   double served_by_now_ = 0;
   int batches_ = 0;
 };
+
+// Creates a scheduler with a fixed number of threads. Each thread evaluates one batch of windows of
+// one model at a time. No other thread runs a model. Decide (batch_decision.h) chooses the next
+// batch. The destructor waits for batches that have started; windows still waiting fail with
+// UNAVAILABLE.
+//
+// `clock` and `observer` outlive the scheduler. `observer` may be null.
+std::unique_ptr<WindowScheduler> MakeBatcher(const BatcherOptions& options,
+                                             const common::Clock& clock,
+                                             WindowObserver* observer = nullptr);
 
 }  // namespace duet::server::batching
 

@@ -44,6 +44,22 @@ class BackgroundThread {
   std::thread thread_;
 };
 
+// Runs a task repeatedly on a thread of its own, with a pause in between, until destroyed.
+class RepeatedTask {
+ public:
+  RepeatedTask(double pause_seconds, std::function<void()> task);
+  // Waits for a task that is running.
+  ~RepeatedTask();
+
+ private:
+  void Run(double pause_seconds, const std::function<void()>& task);
+
+  Mutex mutex_;
+  CondVar changed_;
+  bool stopping_ DUET_GUARDED_BY(mutex_) = false;
+  std::thread thread_;
+};
+
 }  // namespace duet::server::common
 
 #endif  // DUET_SERVER_COMMON_BACKGROUND_THREAD_H_

@@ -19,6 +19,14 @@ class Clock {
   static const Clock& Real();
 };
 
+inline const Clock& Clock::Real() {
+  class RealClock final : public Clock {
+    TimePoint Now() const override { return std::chrono::steady_clock::now(); }
+  };
+  static const RealClock clock;
+  return clock;
+}
+
 inline double SecondsBetween(TimePoint from, TimePoint to) {
   return std::chrono::duration<double>(to - from).count();
 }

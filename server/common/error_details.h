@@ -9,6 +9,11 @@
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 
+namespace grpc {
+class ServerContextBase;
+class Status;
+}  // namespace grpc
+
 namespace duet::server::common {
 
 // A field of a rejected request.
@@ -40,12 +45,12 @@ inline constexpr absl::string_view kReasonCredentialsInvalid = "CREDENTIALS_INVA
 inline constexpr absl::string_view kReasonCallerUnknown = "CALLER_UNKNOWN";
 inline constexpr absl::string_view kReasonRoleMissing = "ROLE_MISSING";
 inline constexpr absl::string_view kReasonCallRate = "CALL_RATE_EXCEEDED";
-inline constexpr absl::string_view kReasonFramesInFlight = "FRAMES_IN_FLIGHT_EXCEEDED";
 
 void AddBadRequest(absl::Status& status, const std::vector<FieldViolation>& violations);
 void AddRetryInfo(absl::Status& status, absl::Duration delay);
-void AddErrorInfo(absl::Status& status, absl::string_view reason,
-                  const std::map<std::string, std::string>& metadata = {});
+// Returns the status with an ErrorInfo.
+absl::Status WithInfo(absl::Status status, absl::string_view reason,
+                      const std::map<std::string, std::string>& metadata = {});
 
 // Returns the reason in a status's ErrorInfo, or an empty string if there is none.
 std::string ReasonOf(const absl::Status& status);
@@ -53,6 +58,13 @@ std::string ReasonOf(const absl::Status& status);
 // Returns all failures as one status: the code of the first, and one message per line. OK if none
 // failed.
 absl::Status Join(const std::vector<absl::Status>& statuses);
+
+// Converts a status for the wire; the only place that does. Code and message stay as they are,
+// payloads become google.rpc.Status in grpc-status-details-bin.
+grpc::Status ToGrpcStatus(const absl::Status& status);
+// Sends the delay of the status's RetryInfo as grpc-retry-pushback-ms, which gRPC's built-in
+// retries follow. Does nothing if the status has no RetryInfo.
+void AddRetryPushback(const absl::Status& status, grpc::ServerContextBase& context);
 
 }  // namespace duet::server::common
 

@@ -7,14 +7,14 @@
 #include <cstddef>
 #include <fstream>
 #include <sstream>
-#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
 
 namespace duet::server::config {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,6 +146,100 @@ std::uint64_t AvailableMemory(const fs::path& system_root) {
     limit = std::min(limit, LimitIn(cgroup / "memory.limit_in_bytes"));
   }
   return limit;
+}
+
+namespace {
+
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
+
+// Measured, and rounded up: docs/costs.md#memory.
+constexpr std::uint64_t kProgramBytes = 104 * kMebibyte;
+constexpr std::uint64_t kWorkerBytes = 4 * kMebibyte;
+constexpr std::uint64_t kCallBytes = 640 << 10;
+
+// In multiples of the largest request. While it is parsed, its bytes exist as they came and as
+// numbers, and then as numbers and as positions; one of the two counts as held.
+constexpr std::uint64_t kParsing = 1;
+constexpr std::uint64_t kLeastTransport = 3;
+constexpr std::uint64_t kLeastHeld = 1;
+// If memory is not short, as many of the largest requests are received, and as many held, at a
+// time.
+constexpr std::uint64_t kMostRequests = 16;
+// No request of use is smaller.
+constexpr std::uint64_t kLeastRequestBytes = kMebibyte;
+constexpr std::uint64_t kLeastCalls = 4;
+
+std::uint64_t Left(std::uint64_t of, std::uint64_t taken) { return of > taken ? of - taken : 0; }
+
+std::uint64_t Program(const v1::ServerConfig& settings) {
+  return kProgramBytes + settings.workers() * kWorkerBytes;
+}
+
+std::uint64_t Calls(const v1::ServerConfig& settings) { return settings.max_calls() * kCallBytes; }
+
+std::string Megabytes(std::uint64_t bytes) { return absl::StrCat(bytes / 1000000, " MB"); }
+
+}  // namespace
+
+MemoryNeed NeedOf(const v1::ServerConfig& settings) {
+  return {Program(settings), Calls(settings), settings.max_transport_bytes(),
+          settings.max_held_bytes(), kParsing * settings.max_request_bytes()};
+}
+
+void FitCallsToMemory(const v1::ServerConfig& given, v1::ServerConfig* settings) {
+  const std::uint64_t left = Left(settings->memory_limit_bytes(), Program(*settings));
+  if (!given.has_max_calls()) {
+    const std::uint64_t most = std::max(kLeastCalls, left / 3 / kCallBytes);
+    settings->set_max_calls(
+        static_cast<uint32_t>(std::min<std::uint64_t>(most, settings->max_calls())));
+  }
+  if (!given.has_max_request_bytes()) {
+    const std::uint64_t most =
+        Left(left, Calls(*settings)) / (kLeastTransport + kLeastHeld + kParsing);
+    settings->set_max_request_bytes(std::clamp<std::uint64_t>(
+        most / kMebibyte * kMebibyte, kLeastRequestBytes, settings->max_request_bytes()));
+  }
+}
+
+void FitBytesToMemory(const v1::ServerConfig& given, v1::ServerConfig* settings) {
+  const std::uint64_t request = settings->max_request_bytes();
+  const std::uint64_t most = kMostRequests * request;
+  const std::uint64_t left = Left(settings->memory_limit_bytes(),
+                                  Program(*settings) + Calls(*settings) + kParsing * request);
+  if (!given.has_max_transport_bytes()) {
+    const std::uint64_t share =
+        given.has_max_held_bytes() ? Left(left, given.max_held_bytes()) : left / 2;
+    settings->set_max_transport_bytes(std::clamp(share, kLeastTransport * request, most));
+  }
+  if (!given.has_max_held_bytes()) {
+    settings->set_max_held_bytes(
+        std::clamp(Left(left, settings->max_transport_bytes()), kLeastHeld * request, most));
+  }
+}
+
+std::vector<std::string> MemoryWarnings(const v1::ServerConfig& settings, std::uint64_t available,
+                                        std::uint64_t resident) {
+  std::vector<std::string> warnings;
+  if (settings.memory_limit_bytes() > available &&
+      settings.memory_limit_bytes() != kUnlimitedMemory) {
+    warnings.push_back(absl::StrCat("memory_limit_bytes: expected at most ", available,
+                                    ", which this machine or its control group allows, got ",
+                                    settings.memory_limit_bytes(),
+                                    "; above that the kernel ends the server"));
+  }
+  const std::uint64_t limit = std::min(settings.memory_limit_bytes(), available);
+  MemoryNeed need = NeedOf(settings);
+  need.program = std::max(need.program, resident);
+  if (need.total() <= limit) return warnings;
+  warnings.push_back(absl::StrCat(
+      "memory: the settings admit requests that need ", Megabytes(need.total()),
+      ", and the limit is ", Megabytes(limit), ": ", Megabytes(need.program),
+      " for the program and its models, ", Megabytes(need.calls), " for max_calls = ",
+      settings.max_calls(), ", ", Megabytes(need.transport), " for max_transport_bytes, ",
+      Megabytes(need.held), " for max_held_bytes, ", Megabytes(need.parsing),
+      " to parse a request of max_request_bytes; lower these settings or raise the limit, or the "
+      "kernel may end the server"));
+  return warnings;
 }
 
 }  // namespace duet::server::config

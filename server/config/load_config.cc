@@ -21,8 +21,6 @@
 #include "model/base/file.h"
 #include "model/base/nearest.h"
 #include "model/base/text.h"
-#include "model/messages/message_text.h"
-#include "server/config/setting.h"
 
 namespace duet::server::config {
 namespace {
@@ -201,15 +199,6 @@ bool IsAbsent(const v1::ServerConfig& settings, const FieldDescriptor& field) {
 }
 
 }  // namespace
-
-absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json) {
-  v1::ServerConfig config;
-  const absl::Status status = messages::ParseMessage(
-      {text.data(), text.size()},
-      json ? messages::MessageSyntax::kJson : messages::MessageSyntax::kTextFormat, &config);
-  if (!status.ok()) return status;
-  return config;
-}
 
 absl::Status ReadConfigFile(const std::filesystem::path& path, v1::ServerConfig* config,
                             messages::FieldPlaces* places) {

@@ -17,10 +17,6 @@
 
 namespace duet::server::config {
 
-// Parses the text of a configuration file: JSON or text format. Unknown fields are rejected.
-// Fails with INVALID_ARGUMENT, the place and the reason.
-absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool json);
-
 // Replaces `config` by the content of a configuration file: JSON if its name ends in ".json",
 // otherwise text format. `places` receives the place of each field that the file sets. After a
 // failure `config` has the fields that could be read.

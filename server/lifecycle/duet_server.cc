@@ -11,11 +11,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "server/batching/batcher.h"
+#include "server/batching/window_queue.h"
 #include "server/common/listen_address.h"
-#include "server/lifecycle/load_models.h"
-#include "server/lifecycle/validate_settings.h"
-#include "server/security/tls_certificates.h"
+#include "server/security/secret_files.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::lifecycle {
@@ -267,11 +265,11 @@ absl::Status DuetServer::ReloadSecrets() {
 
 void DuetServer::Watch(std::function<absl::Status()> self_check) {
   watch_.push_back(
-      std::make_unique<RepeatedTask>(kCheckTimeSeconds, [this] { service_.CheckTime(); }));
-  watch_.push_back(std::make_unique<RepeatedTask>(kTrimSeconds, [this] {
+      std::make_unique<common::RepeatedTask>(kCheckTimeSeconds, [this] { service_.CheckTime(); }));
+  watch_.push_back(std::make_unique<common::RepeatedTask>(kTrimSeconds, [this] {
     heap_trimmer_.Look(service_.large_request_bytes(), admission_.held_bytes());
   }));
-  watch_.push_back(std::make_unique<RepeatedTask>(kHousekeepingSeconds, [this] {
+  watch_.push_back(std::make_unique<common::RepeatedTask>(kHousekeepingSeconds, [this] {
     Tell(secrets_->Look());
     log_.TellUnlogged();
   }));
@@ -387,9 +385,8 @@ void DuetServer::Close() {
 }
 
 void DuetServer::SetHealth(bool serving) {
-  common::MutexLock lock(health_mutex_);
-  healthy_ = serving;
-  UpdateHealthLocked();
+  serving_ = serving;
+  UpdateHealth();
 }
 
 void DuetServer::SetReachable(bool reachable) {
@@ -400,13 +397,9 @@ void DuetServer::SetReachable(bool reachable) {
 
 void DuetServer::UpdateHealth() {
   common::MutexLock lock(health_mutex_);
-  UpdateHealthLocked();
-}
-
-void DuetServer::UpdateHealthLocked() {
   grpc::HealthCheckServiceInterface* health = grpc_.server->GetHealthCheckService();
   const std::string service = service::MotionSynthesisService::kServiceName;
-  const bool healthy = healthy_ && reachable_;
+  const bool healthy = serving_ && reachable_;
   health->SetServingStatus("", healthy);
   health->SetServingStatus(service, healthy);
   std::set<std::string> served;

@@ -13,18 +13,15 @@
 #include "duet/v1/server_config.pb.h"
 #include "server/admin/admin_service.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/background_thread.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
 #include "server/lifecycle/grpc_server.h"
-#include "server/lifecycle/heap_trimmer.h"
 #include "server/lifecycle/load_models.h"
 #include "server/lifecycle/process_end.h"
-#include "server/lifecycle/repeated_task.h"
-#include "server/lifecycle/self_check.h"
 #include "server/metrics/json_log.h"
 #include "server/metrics/metrics_endpoint.h"
 #include "server/metrics/server_metrics.h"
-#include "server/registry/model_control.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_repository.h"
@@ -33,6 +30,15 @@
 #include "server/service/motion_synthesis_service.h"
 
 namespace duet::server::lifecycle {
+
+// Returns the files of secrets that the settings name.
+inline security::SecretFiles::Options SecretsOf(const v1::ServerConfig& settings) {
+  security::SecretFiles::Options secrets;
+  secrets.tls = {settings.tls_certificate_file(), settings.tls_key_file(),
+                 settings.tls_client_ca_file()};
+  secrets.access = settings.access_file();
+  return secrets;
+}
 
 // Returns the settings of the log.
 metrics::LogOptions LogOptionsOf(const v1::ServerConfig& settings);
@@ -110,7 +116,6 @@ class DuetServer {
   // Applies the result of the last self-check.
   void SetReachable(bool reachable);
   void UpdateHealth();
-  void UpdateHealthLocked() DUET_REQUIRES(health_mutex_);
   void Close();
   metrics::ReadValues ReadValues(const metrics::LogSink& sink) const;
   service::ServiceParts Parts();
@@ -129,13 +134,13 @@ class DuetServer {
   std::string engine_;  // of the models; changes before calls are admitted
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
+  std::atomic<bool> serving_{false};  // reported by the health service while reachable_
   std::atomic<bool> draining_{false};
   std::atomic<bool> reachable_{true};  // by the last self-check
   common::Mutex health_mutex_;
-  bool healthy_ DUET_GUARDED_BY(health_mutex_) = false;
   std::set<std::string> health_models_ DUET_GUARDED_BY(health_mutex_);  // ever told of
   HeapTrimmer heap_trimmer_;
-  std::vector<std::unique_ptr<RepeatedTask>> watch_;
+  std::vector<std::unique_ptr<common::RepeatedTask>> watch_;
   std::unique_ptr<LastResort> stuck_;      // null without a limit: see watchdog_seconds
   std::unique_ptr<SelfCheck> self_check_;  // null when the options want none
   // Used only by the self-check: the batches that it saw last, and since when the queue moves.

@@ -5,12 +5,10 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/common/clock.h"
-#include "server/registry/golden_check.h"
 
 namespace duet::server::lifecycle {
 namespace {

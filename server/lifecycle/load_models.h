@@ -15,7 +15,6 @@
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_repository.h"
-#include "server/registry/model_status.h"
 
 namespace duet::server::lifecycle {
 

@@ -12,30 +12,147 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <string>
+#include <optional>
 #include <utility>
-#include <vector>
 
+#include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
+#include "server/common/listen_address.h"
 #include "server/config/container_limits.h"
-#include "server/config/load_config.h"
-#include "server/config/memory_plan.h"
 #include "server/lifecycle/duet_server.h"
-#include "server/lifecycle/process_end.h"
-#include "server/lifecycle/self_check.h"
-#include "server/lifecycle/validate_settings.h"
+#include "server/lifecycle/grpc_server.h"
+#include "server/lifecycle/load_models.h"
 #include "server/metrics/json_log.h"
-#include "server/metrics/log_sink.h"
-#include "server/metrics/process_metrics.h"
+#include "server/metrics/server_metrics.h"
+#include "server/registry/model_manager.h"
+#include "server/registry/model_registry.h"
+#include "server/security/secret_files.h"
 
 namespace duet::server::lifecycle {
+
+namespace {
+
+void Add(const absl::Status& status, std::vector<std::string>* mistakes) {
+  for (absl::string_view line : absl::StrSplit(status.message(), '\n', absl::SkipEmpty())) {
+    mistakes->emplace_back(line);
+  }
+}
+
+void CheckSecrets(const v1::ServerConfig& settings, std::vector<std::string>* mistakes) {
+  security::SecretFiles::Options secrets = SecretsOf(settings);
+  // A certificate without a key is a mistake in the settings, and reported there.
+  if (secrets.tls.key.empty()) secrets.tls.certificate.clear();
+  Add(security::SecretFiles::Open(std::move(secrets)).status(), mistakes);
+}
+
+void CheckAddress(absl::string_view field, const std::string& setting, Ports ports,
+                  std::vector<std::string>* mistakes) {
+  const std::optional<common::ListenAddress> address = common::AddressOf(setting);
+  if (!address.has_value()) return;
+  const absl::Status bindable = common::CheckBindable(address->host, address->port);
+  if (bindable.ok() || (absl::IsAlreadyExists(bindable) && ports == Ports::kMayBeInUse)) return;
+  mistakes->push_back(absl::StrCat(field, ": ", bindable.message()));
+}
+
+}  // namespace
+
+ValidatedSettings ValidateSettings(const config::CommandLine& command_line, int cores,
+                                   std::uint64_t memory_bytes, const EngineOpener& open_engine,
+                                   Ports ports) {
+  config::Settings settings = config::ReadSettings(command_line, cores, memory_bytes);
+  ValidatedSettings validated{std::move(settings.values),
+                              absl::UnknownError("not opened"),
+                              std::move(settings.mistakes),
+                              {}};
+  const v1::ServerConfig& values = validated.values;
+  validated.source = open_engine(values);
+  Add(validated.source.status(), &validated.setting_mistakes);
+  CheckSecrets(values, &validated.resource_mistakes);
+  CheckAddress("listen", values.listen(), ports, &validated.resource_mistakes);
+  CheckAddress("metrics_listen", values.metrics_listen(), ports, &validated.resource_mistakes);
+  CheckAddress("admin_listen", values.admin_listen(), ports, &validated.resource_mistakes);
+  return validated;
+}
+
+namespace {
+
+// Writes the result of loading each model.
+class Findings final : public registry::ModelObserver {
+ public:
+  explicit Findings(std::ostream& out) : out_(out) {}
+
+  void Loaded(const registry::LoadReport& report, bool) override {
+    if (report.model.ok()) {
+      out_ << "ok: " << report.source << "\n";
+    } else {
+      Problem(report.source + ": " + std::string(report.model.status().message()));
+    }
+  }
+  void Scanned(const std::vector<registry::SkippedFolder>& skipped) override {
+    for (const registry::SkippedFolder& folder : skipped) {
+      Problem(folder.folder + ": skipped: " + folder.reason);
+    }
+  }
+
+  void Problem(const std::string& problem) {
+    for (absl::string_view line : absl::StrSplit(problem, '\n')) out_ << "wrong: " << line << "\n";
+    all_right_ = false;
+  }
+  void Problems(const std::vector<std::string>& problems) {
+    for (const std::string& problem : problems) Problem(problem);
+  }
+  void Problems(const absl::StatusOr<std::vector<std::string>>& problems) {
+    if (!problems.ok()) return Problem(std::string(problems.status().message()));
+    Problems(*problems);
+  }
+  void LeftOut(const std::vector<std::string>& sources) {
+    if (sources.empty()) return;
+    out_ << "left out, not free for all uses: " << absl::StrJoin(sources, ", ") << "\n";
+  }
+  bool all_right() const { return all_right_; }
+
+ private:
+  std::ostream& out_;
+  bool all_right_ = true;
+};
+
+void CheckModels(const v1::ServerConfig& values, const registry::ModelSource& source,
+                 Findings& findings, std::ostream& out) {
+  registry::ModelRegistry registry;
+  registry::ModelManager manager(registry, findings);
+  ConfigureModels(values, manager);
+  const auto loaded = LoadModels(
+      values, source, [] { return false; }, manager, registry);
+  if (loaded.ok()) {
+    findings.Problems(loaded->problems);
+    findings.LeftOut(loaded->left_out);
+    findings.Problems(SettleModels(values, manager, registry));
+  } else {
+    findings.Problem(std::string(loaded.status().message()));
+  }
+  for (const std::string& warning :
+       config::MemoryWarnings(values, config::AvailableMemory(), metrics::ResidentBytes())) {
+    out << "warning: " << warning << "\n";
+  }
+}
+
+}  // namespace
+
+int CheckConfig(const ValidatedSettings& settings, std::ostream& out) {
+  Findings findings(out);
+  findings.Problems(settings.setting_mistakes);
+  findings.Problems(settings.resource_mistakes);
+  if (settings.source.ok()) CheckModels(settings.values, *settings.source, findings, out);
+  if (!settings.setting_mistakes.empty()) return kExitUsage;
+  return findings.all_right() ? kExitStopped : kExitFailed;
+}
 
 namespace {
 
@@ -44,56 +161,27 @@ namespace {
 //
 // Source:  sd_notify(3): a datagram of lines to a Unix socket, which is abstract if its name begins
 //          with '@'.
-// Threads: safe to call concurrently.
-class SystemdNotifier {
- public:
-  // `socket`: the value of NOTIFY_SOCKET; may be empty.
-  explicit SystemdNotifier(std::string socket) : socket_(std::move(socket)) {}
-  // Uses NOTIFY_SOCKET of this process.
-  static SystemdNotifier OfProcess();
-
-  // Calls are served. `status` is a line for people.
-  void Ready(absl::string_view status) const;
-  // A reload has begun. Ready ends it.
-  void Reloading() const;
-  void Stopping() const;
-
- private:
-  void Send(const std::string& message) const;
-
-  const std::string socket_;
-};
-
-SystemdNotifier SystemdNotifier::OfProcess() {
-  const char* socket = std::getenv("NOTIFY_SOCKET");
-  return SystemdNotifier(socket == nullptr ? "" : socket);
-}
-
-void SystemdNotifier::Ready(absl::string_view status) const {
-  Send(absl::StrCat("READY=1\nSTATUS=", status));
-}
-
-void SystemdNotifier::Reloading() const {
-  // The time, of CLOCK_MONOTONIC, lets systemd match a READY=1 with one of several reloads.
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  Send(absl::StrCat("RELOADING=1\nMONOTONIC_USEC=",
-                    std::chrono::duration_cast<std::chrono::microseconds>(now).count()));
-}
-
-void SystemdNotifier::Stopping() const { Send("STOPPING=1"); }
-
-void SystemdNotifier::Send(const std::string& message) const {
+void NotifySystemd(const std::string& message) {
+  const char* const variable = std::getenv("NOTIFY_SOCKET");
+  const std::string path = variable == nullptr ? "" : variable;
   sockaddr_un address = {};
-  if (socket_.empty() || socket_.size() >= sizeof(address.sun_path)) return;
+  if (path.empty() || path.size() >= sizeof(address.sun_path)) return;
   address.sun_family = AF_UNIX;
-  std::copy(socket_.begin(), socket_.end(), address.sun_path);
-  if (socket_[0] == '@') address.sun_path[0] = '\0';
-  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + socket_.size());
+  std::copy(path.begin(), path.end(), address.sun_path);
+  if (path[0] == '@') address.sun_path[0] = '\0';
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return;
   sendto(descriptor, message.data(), message.size(), MSG_NOSIGNAL,
          reinterpret_cast<const sockaddr*>(&address), length);
   close(descriptor);
+}
+
+// The time, of CLOCK_MONOTONIC, lets systemd match a READY=1 with one of several reloads.
+void NotifyReloading() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  NotifySystemd(absl::StrCat("RELOADING=1\nMONOTONIC_USEC=",
+                             std::chrono::duration_cast<std::chrono::microseconds>(now).count()));
 }
 
 // The libraries accept only plain functions.
@@ -173,16 +261,20 @@ absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig&
   return server;
 }
 
+void NotifyReady(DuetServer& server) {
+  NotifySystemd(absl::StrCat("READY=1\nSTATUS=", ServedText(server)));
+}
+
 // Serves until a signal to stop, and reloads at a signal to reload.
-void ServeUntilStopped(DuetServer& server, StopSignal& stop, const SystemdNotifier& systemd) {
-  systemd.Ready(ServedText(server));
+void ServeUntilStopped(DuetServer& server, StopSignal& stop) {
+  NotifyReady(server);
   while (stop.Wait() == StopSignal::Kind::kReload) {
-    systemd.Reloading();
-    server.control().Reload([&server, &systemd](const auto& report) {
-      if (!absl::IsCancelled(report.status())) systemd.Ready(ServedText(server));
+    NotifyReloading();
+    server.control().Reload([&server](const auto& report) {
+      if (!absl::IsCancelled(report.status())) NotifyReady(server);
     });
   }
-  systemd.Stopping();
+  NotifySystemd("STOPPING=1");
   server.Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
 }
 
@@ -207,7 +299,6 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
   if (!settings.resource_mistakes.empty()) {
     return absl::FailedPreconditionError(settings.resource_mistakes.front());
   }
-  const SystemdNotifier systemd = SystemdNotifier::OfProcess();
   log.Info("engine_opened", {{"engine", source.engine}});
   const auto server = StartServing(values, source, stop, sink);
   if (absl::IsCancelled(server.status())) return absl::OkStatus();
@@ -224,7 +315,7 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
     return current.status();
   };
   serving.control().AddReloadable({"configuration", configure});
-  ServeUntilStopped(serving, stop, systemd);
+  ServeUntilStopped(serving, stop);
   return absl::OkStatus();
 }
 

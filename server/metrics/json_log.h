@@ -11,7 +11,6 @@
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
-#include "server/metrics/call_log_filter.h"
 #include "server/metrics/call_record.h"
 #include "server/metrics/log_sink.h"
 

@@ -13,16 +13,15 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <optional>
-#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "server/common/listen_address.h"
 
 namespace duet::server::metrics {
@@ -155,12 +154,12 @@ class PollingEndpoint final : public MetricsEndpoint {
  private:
   HttpPages Pages() const {
     const auto state = [](bool good, const char* yes, const char* no) {
-      return HttpPage{good ? 200 : 503, "text/plain", good ? yes : no};
+      return HttpPage{good, "text/plain", good ? yes : no};
     };
     return {
         {"/metrics",
          [this] {
-           return HttpPage{200, "text/plain; version=0.0.4; charset=utf-8", options_.render()};
+           return HttpPage{true, "text/plain; version=0.0.4; charset=utf-8", options_.render()};
          }},
         {"/healthz",
          [this, state] { return state(options_.healthy(), "ok\n", "not reachable\n"); }},
@@ -246,71 +245,38 @@ absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(
 
 namespace {
 
-std::string_view Reason(int code) {
-  switch (code) {
-    case 200:
-      return "OK";
-    case 400:
-      return "Bad Request";
-    case 404:
-      return "Not Found";
-    case 405:
-      return "Method Not Allowed";
-    case 431:
-      return "Request Header Fields Too Large";
-    case 503:
-      return "Service Unavailable";
-    default:
-      return "HTTP Version Not Supported";
-  }
+// `status`: code and reason. `fields`: further lines of the head.
+std::string Response(absl::string_view status, absl::string_view content_type,
+                     absl::string_view body, bool with_body = true, absl::string_view fields = "") {
+  return absl::StrCat("HTTP/1.1 ", status, "\r\nContent-Type: ", content_type,
+                      "\r\nContent-Length: ", body.size(), "\r\n", fields,
+                      "Connection: close\r\n\r\n", with_body ? body : "");
 }
 
-std::string Response(const HttpPage& page, bool with_body = true) {
-  return absl::StrCat("HTTP/1.1 ", page.code, " ", std::string(Reason(page.code)),
-                      "\r\nContent-Type: ", page.content_type,
-                      "\r\nContent-Length: ", page.body.size(),
-                      page.code == 405 ? "\r\nAllow: GET, HEAD" : "",
-                      "\r\nConnection: close\r\n\r\n", with_body ? page.body : "");
-}
-
-std::string Refusal(int code) {
-  return Response({code, "text/plain", absl::StrCat(std::string(Reason(code)), "\n")});
-}
-
-bool IsToken(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(),
-                                      [](unsigned char c) { return absl::ascii_isupper(c); });
-}
-
-// The three words of a request line. Split returns nullopt for any other number of words.
-struct RequestLine {
-  std::string_view method, target, version;
-};
-std::optional<RequestLine> Split(std::string_view line) {
-  const std::size_t first = line.find(' ');
-  const std::size_t last = line.rfind(' ');
-  if (first == std::string_view::npos || first == last) return std::nullopt;
-  return RequestLine{line.substr(0, first), line.substr(first + 1, last - first - 1),
-                     line.substr(last + 1)};
+std::string Refusal(absl::string_view status, absl::string_view fields = "") {
+  return Response(status, "text/plain", absl::StrCat(status, "\n"), true, fields);
 }
 
 }  // namespace
 
 std::optional<std::string> HttpReply(std::string_view received, const HttpPages& pages) {
   const std::size_t end = received.find("\r\n\r\n");
-  if (std::min(end, received.size()) > kMaxHttpHeadBytes) return Refusal(431);
-  if (end == std::string_view::npos) return std::nullopt;
-  const std::optional<RequestLine> line = Split(received.substr(0, received.find("\r\n")));
-  if (!line || !IsToken(line->method)) return Refusal(400);
-  const absl::string_view version(line->version.data(), line->version.size());
-  if (version != "HTTP/1.1" && version != "HTTP/1.0") {
-    return Refusal(absl::StartsWith(version, "HTTP/") ? 505 : 400);
+  if (std::min(end, received.size()) > kMaxHttpHeadBytes) {
+    return Refusal("431 Request Header Fields Too Large");
   }
-  const bool head = line->method == "HEAD";
-  if (!head && line->method != "GET") return Refusal(405);
-  const auto page = pages.find(line->target.substr(0, line->target.find('?')));
-  if (page == pages.end()) return Refusal(404);
-  return Response(page->second(), !head);
+  if (end == std::string_view::npos) return std::nullopt;
+  const std::vector<absl::string_view> words =
+      absl::StrSplit(absl::string_view(received.data(), received.find("\r\n")), ' ');
+  if (words.size() != 3 || !absl::StartsWith(words[2], "HTTP/1.")) {
+    return Refusal("400 Bad Request");
+  }
+  const bool head = words[0] == "HEAD";
+  if (!head && words[0] != "GET") return Refusal("405 Method Not Allowed", "Allow: GET, HEAD\r\n");
+  const auto found = pages.find(words[1].substr(0, words[1].find('?')));
+  if (found == pages.end()) return Refusal("404 Not Found");
+  const HttpPage page = found->second();
+  return Response(page.is_good ? "200 OK" : "503 Service Unavailable", page.content_type, page.body,
+                  !head);
 }
 
 }  // namespace duet::server::metrics

@@ -40,7 +40,7 @@ class MetricsEndpoint {
 
 // The content of one page of the endpoint.
 struct HttpPage {
-  int code = 200;  // 200 or 503
+  bool is_good = true;  // status 200, otherwise 503
   std::string content_type = "text/plain";
   std::string body;
 };
@@ -53,7 +53,7 @@ inline constexpr std::size_t kMaxHttpHeadBytes = 8192;
 
 // Returns the whole response (RFC 9112) to what a client has sent so far, or nullopt while the head
 // of its request is incomplete. Serves GET and HEAD of known pages; anything else gets 400, 404,
-// 405, 431 or 505. Request bodies are not read. The connection ends with the response.
+// 405 or 431. Request bodies are not read. The connection ends with the response.
 std::optional<std::string> HttpReply(std::string_view received, const HttpPages& pages);
 
 }  // namespace duet::server::metrics

@@ -1,30 +1,119 @@
 #include "server/metrics/server_metrics.h"
 
 #include <prometheus/text_serializer.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
-#include <utility>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <system_error>
 
 #include "absl/status/status.h"
 #include "server/common/error_details.h"
-#include "server/metrics/process_metrics.h"
 
 namespace duet::server::metrics {
+
+namespace {
+
+using Families = std::vector<prometheus::MetricFamily>;
+
+// Returns the fields of /proc/self/stat after the program's name, which may contain any character.
+// The first is the state, field 3 in proc(5).
+std::vector<std::string> StatFields() {
+  std::ifstream file("/proc/self/stat");
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos) return {};
+  std::istringstream words(text.substr(name_end + 1));
+  return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
+}
+
+// The boot time in seconds since 1970.
+std::optional<double> BootTime() {
+  std::ifstream file("/proc/stat");
+  std::string line;
+  while (std::getline(file, line)) {
+    std::istringstream words(line);
+    std::string name;
+    double seconds = 0;
+    if (words >> name >> seconds && name == "btime") return seconds;
+  }
+  return std::nullopt;
+}
+
+void AddStat(Families& families) {
+  // Field numbers of proc(5); `fields` begins with number 3.
+  constexpr std::size_t kUserTime = 14, kSystemTime = 15, kThreads = 20, kStart = 22,
+                        kVirtualMemory = 23, kResidentPages = 24;
+  const std::vector<std::string> fields = StatFields();
+  if (fields.size() <= kResidentPages - 3) return;
+  const auto field = [&fields](std::size_t number) { return std::stod(fields[number - 3]); };
+  const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
+  families.push_back(Counter("process_cpu_seconds_total",
+                             "Total user and system CPU time spent in seconds.",
+                             (field(kUserTime) + field(kSystemTime)) / ticks));
+  families.push_back(Gauge("process_threads", "Number of threads.", field(kThreads)));
+  families.push_back(Gauge("process_virtual_memory_bytes", "Virtual memory size in bytes.",
+                           field(kVirtualMemory)));
+  families.push_back(Gauge("process_resident_memory_bytes", "Resident memory size in bytes.",
+                           field(kResidentPages) * static_cast<double>(sysconf(_SC_PAGESIZE))));
+  if (const auto boot = BootTime()) {
+    families.push_back(Gauge("process_start_time_seconds",
+                             "Start time of the process since unix epoch in seconds.",
+                             *boot + field(kStart) / ticks));
+  }
+}
+
+void AddDescriptors(Families& families) {
+  std::error_code error;
+  const std::filesystem::directory_iterator open("/proc/self/fd", error);
+  if (!error) {
+    // One of them belongs to this iterator.
+    families.push_back(Gauge("process_open_fds", "Number of open file descriptors.",
+                             static_cast<double>(std::distance(begin(open), end(open)) - 1)));
+  }
+  rlimit limit = {};
+  if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+    families.push_back(Gauge("process_max_fds", "Maximum number of open file descriptors.",
+                             static_cast<double>(limit.rlim_cur)));
+  }
+}
+
+}  // namespace
+
+std::uint64_t ResidentBytes() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t pages = 0, resident = 0;
+  if (!(file >> pages >> resident)) return 0;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value) {
+  prometheus::ClientMetric metric;
+  metric.gauge.value = value;
+  return {name, help, prometheus::MetricType::Gauge, {metric}};
+}
+
+prometheus::MetricFamily Counter(const std::string& name, const std::string& help, double value) {
+  prometheus::ClientMetric metric;
+  metric.counter.value = value;
+  return {name, help, prometheus::MetricType::Counter, {metric}};
+}
+
+std::vector<prometheus::MetricFamily> ReadProcessMetrics() {
+  Families families;
+  AddStat(families);
+  AddDescriptors(families);
+  return families;
+}
+
 namespace {
 
 using prometheus::Labels;
-
-// One millisecond to one minute: a window takes tens of milliseconds, a long clip a minute.
-const prometheus::Histogram::BucketBoundaries& SecondsBuckets() {
-  static const auto* const buckets = new prometheus::Histogram::BucketBoundaries{
-      0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60};
-  return *buckets;
-}
-
-const prometheus::Histogram::BucketBoundaries& BatchBuckets() {
-  static const auto* const buckets =
-      new prometheus::Histogram::BucketBoundaries{1, 2, 4, 8, 16, 32, 64};
-  return *buckets;
-}
 
 Labels MethodLabels(const MethodInfo& method) {
   return {{"grpc_type", std::string(method.type)},
@@ -65,6 +154,19 @@ Labels PriorityLabels(batching::Priority priority) {
 
 }  // namespace
 
+// One millisecond to one minute: a window takes tens of milliseconds, a long clip a minute.
+const prometheus::Histogram::BucketBoundaries& ServerMetrics::SecondsBuckets() {
+  static const auto* const buckets = new prometheus::Histogram::BucketBoundaries{
+      0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60};
+  return *buckets;
+}
+
+const prometheus::Histogram::BucketBoundaries& ServerMetrics::BatchBuckets() {
+  static const auto* const buckets =
+      new prometheus::Histogram::BucketBoundaries{1, 2, 4, 8, 16, 32, 64};
+  return *buckets;
+}
+
 ServerMetrics::Counters& ServerMetrics::NewCounters(const char* name, const char* help) {
   return prometheus::BuildCounter().Name(name).Help(help).Register(registry_);
 }
@@ -77,59 +179,7 @@ ServerMetrics::Histograms& ServerMetrics::NewHistograms(const char* name, const 
   return prometheus::BuildHistogram().Name(name).Help(help).Register(registry_);
 }
 
-ServerMetrics::ServerMetrics()
-    : started_(NewCounters("grpc_server_started_total", "RPCs started on the server.")),
-      handled_(NewCounters("grpc_server_handled_total",
-                           "RPCs completed on the server, by status code.")),
-      handling_seconds_(
-          NewHistograms("grpc_server_handling_seconds", "Time from an RPC's start to its status.")),
-      in_flight_(NewGauges("duet_calls_in_flight", "RPCs being answered.")),
-      first_chunk_seconds_(NewHistograms(
-          "duet_first_chunk_seconds", "Time from a Synthesize call's start to its first chunk.")),
-      frames_(NewCounters("duet_frames_total", "Follower frames sent.")),
-      computed_frames_(NewCounters("duet_computed_frames_total",
-                                   "Frames of evaluated windows, once for each expected sample.")),
-      queue_seconds_(
-          NewHistograms("duet_queue_seconds", "Time that a window waited for a worker.")),
-      compute_seconds_(NewHistograms("duet_compute_seconds", "Time of one batch in the network.")
-                           .Add({}, SecondsBuckets())),
-      batch_size_(
-          NewHistograms("duet_batch_size", "Windows evaluated together, once for each candidate.")
-              .Add({}, BatchBuckets())),
-      windows_dropped_(
-          NewCounters("duet_windows_dropped_total",
-                      "Windows that never started: cancelled, or too late for their deadline.")),
-      queued_windows_(
-          NewGauges("duet_queued_windows", "Windows waiting for a worker, once for each candidate.")
-              .Add({})),
-      load_seconds_(NewGauges("duet_model_load_seconds", "Time to load a checkpoint.")),
-      model_state_(
-          NewGauges("duet_model_state", "1 if the checkpoint is served, 0 if it was rejected.")),
-      model_last_load_(NewGauges("duet_model_last_load_successful",
-                                 "1 if the checkpoint on disk was loaded, 0 if it was rejected, "
-                                 "even if an earlier load of it is served.")),
-      model_loads_(NewCounters("duet_model_loads_total", "Loads of checkpoints, by result.")),
-      folders_skipped_(NewGauges("duet_model_folders_skipped",
-                                 "Folders in the model repository that hold no checkpoint.")
-                           .Add({})),
-      reloads_(NewCounters("duet_reloads_total",
-                           "Requested reloads of settings and models, by result.")),
-      log_lines_dropped_(
-          NewCounters("duet_log_lines_dropped_total",
-                      "Log lines lost because their reader was too slow or writing failed.")
-              .Add({})),
-      self_check_failures_(NewCounters("duet_self_check_failures_total",
-                                       "Times that the server did not answer its own call.")
-                               .Add({})),
-      refusals_(NewCounters("duet_refusals_total",
-                            "Rejected RPCs, by the reason in their error details.")),
-      caller_calls_(NewCounters("duet_caller_calls_total",
-                                "Completed RPCs of the access file's callers, by status code.")),
-      secrets_reloads_(NewCounters("duet_secrets_reloads_total",
-                                   "Reloads of changed certificates or of a changed access file.")),
-      secrets_last_reload_(NewGauges("duet_secrets_last_reload_successful",
-                                     "1 if the certificates or access file on disk are in use, 0 "
-                                     "if they were rejected and the previous ones are.")) {
+ServerMetrics::ServerMetrics() {
   // Start at 0: Prometheus would not see the first rejection as an increase otherwise.
   for (const char* kind : {"access", "tls"}) {
     secrets_last_reload_.Add({{"kind", kind}}).Set(1);

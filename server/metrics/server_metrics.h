@@ -5,6 +5,7 @@
 #include <prometheus/family.h>
 #include <prometheus/gauge.h>
 #include <prometheus/histogram.h>
+#include <prometheus/metric_family.h>
 #include <prometheus/registry.h>
 
 #include <atomic>
@@ -19,6 +20,19 @@
 #include "server/metrics/call_record.h"
 
 namespace duet::server::metrics {
+
+// Reads the standard process metrics of Prometheus clients from /proc:
+//   process_cpu_seconds_total, process_start_time_seconds, process_threads,
+//   process_resident_memory_bytes, process_virtual_memory_bytes, process_open_fds, process_max_fds
+// Metrics that cannot be read are omitted.
+std::vector<prometheus::MetricFamily> ReadProcessMetrics();
+
+// Returns the resident memory of this process; 0 if it cannot be read.
+std::uint64_t ResidentBytes();
+
+// A gauge and a counter without labels.
+prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value);
+prometheus::MetricFamily Counter(const std::string& name, const std::string& help, double value);
 
 // Limits of the server.
 struct Capacity {
@@ -44,50 +58,8 @@ struct ReadValues {
   std::function<double()> certificate_end;  // seconds since 1970
 };
 
-// Every metric of the server. Durations are histograms in seconds. Label values come from what is
-// served, never from a request.
-//
-// Of calls ("call labels" are grpc_type, grpc_service and grpc_method):
-//   grpc_server_started_total{call labels}             calls begun
-//   grpc_server_handled_total{call labels, grpc_code}  calls ended, by status
-//   grpc_server_handling_seconds{call labels}          from a call's start to its status
-//   duet_calls_in_flight{method}                       calls being answered now
-//   duet_first_chunk_seconds{priority}                 from a call's start to its first chunk
-//   duet_frames_total{model, version}                  follower frames sent
-//   duet_refusals_total{reason}                        calls refused, by the reason of ErrorInfo
-//   duet_caller_calls_total{caller, grpc_code}         calls of the access file's callers
-//   duet_max_calls                                     calls that may be answered at a time: places
-//   duet_places_in_use                                 places that calls and live sessions hold
-// Of windows:
-//   duet_queue_seconds{priority}                       one window's wait for a worker
-//   duet_windows_dropped_total{priority}               never started: cancelled or too late
-//   duet_queued_windows                                waiting now, once for each candidate
-//   duet_max_queued_windows                            first windows that may wait, likewise
-//   duet_computed_frames_total{priority}               of evaluated windows, once for each sample
-// Of batches:
-//   duet_compute_seconds                               one batch in the network
-//   duet_batch_size                                    windows of one batch, likewise
-//   duet_workers                                       batches that may be evaluated at a time
-// Of the server as a whole:
-//   duet_ready                                         1 while /readyz returns 200, otherwise 0
-//   duet_self_check_failures_total                     failed calls of the server to itself
-// Of models:
-//   duet_model_load_seconds{checkpoint}                duration of the last load
-//   duet_model_state{checkpoint}                       1 served, 0 rejected; absent if unloaded
-//   duet_model_last_load_successful{checkpoint}        0: the files on disk were rejected; an
-//                                                      earlier load may still be served
-//   duet_model_info{model, version, default}           1 for each version served now
-//   duet_model_loads_total{result}                     checkpoints loaded: ok or refused
-//   duet_model_folders_skipped                         folders that are not checkpoints
-//   duet_reloads_total{result}                         requested reloads: ok or failed
-// Of certificates and the access file:
-//   duet_secrets_reloads_total{kind, outcome}          times they were read again
-//   duet_secrets_last_reload_successful{kind}          0: the files on disk were rejected; the
-//                                                      earlier ones are still used
-//   duet_tls_certificate_expiry_timestamp_seconds      end of the server's certificate
-// Of the program: duet_build_info{version}, and the standard process_* (process_metrics.h).
-// Of the log:
-//   duet_log_lines_dropped_total                       lines lost to a slow reader or a full disk
+// Every metric of the server (docs/metrics.md). Durations are histograms in seconds. Label values
+// come from what is served, never from a request.
 //
 // Threads: safe to call concurrently.
 class ServerMetrics final : public CallObserver, public batching::WindowObserver {
@@ -130,32 +102,68 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   Counters& NewCounters(const char* name, const char* help);
   Gauges& NewGauges(const char* name, const char* help);
   Histograms& NewHistograms(const char* name, const char* help);
+  static const prometheus::Histogram::BucketBoundaries& SecondsBuckets();
+  static const prometheus::Histogram::BucketBoundaries& BatchBuckets();
 
   prometheus::Registry registry_;
-  Counters& started_;
-  Counters& handled_;
-  Histograms& handling_seconds_;
-  Gauges& in_flight_;
-  Histograms& first_chunk_seconds_;
-  Counters& frames_;
-  Counters& computed_frames_;
-  Histograms& queue_seconds_;
-  prometheus::Histogram& compute_seconds_;
-  prometheus::Histogram& batch_size_;
-  Counters& windows_dropped_;
-  prometheus::Gauge& queued_windows_;
-  Gauges& load_seconds_;
-  Gauges& model_state_;
-  Gauges& model_last_load_;
-  Counters& model_loads_;
-  prometheus::Gauge& folders_skipped_;
-  Counters& reloads_;
-  prometheus::Counter& log_lines_dropped_;
-  prometheus::Counter& self_check_failures_;
-  Counters& refusals_;
-  Counters& caller_calls_;
-  Counters& secrets_reloads_;
-  Gauges& secrets_last_reload_;
+  Counters& started_ = NewCounters("grpc_server_started_total", "RPCs started on the server.");
+  Counters& handled_ =
+      NewCounters("grpc_server_handled_total", "RPCs completed on the server, by status code.");
+  Histograms& handling_seconds_ =
+      NewHistograms("grpc_server_handling_seconds", "Time from an RPC's start to its status.");
+  Gauges& in_flight_ = NewGauges("duet_calls_in_flight", "RPCs being answered.");
+  Histograms& first_chunk_seconds_ = NewHistograms(
+      "duet_first_chunk_seconds", "Time from a Synthesize call's start to its first chunk.");
+  Counters& frames_ = NewCounters("duet_frames_total", "Follower frames sent.");
+  Counters& computed_frames_ = NewCounters(
+      "duet_computed_frames_total", "Frames of evaluated windows, once for each expected sample.");
+  Histograms& queue_seconds_ =
+      NewHistograms("duet_queue_seconds", "Time that a window waited for a worker.");
+  prometheus::Histogram& compute_seconds_ =
+      NewHistograms("duet_compute_seconds", "Time of one batch in the network.")
+          .Add({}, SecondsBuckets());
+  prometheus::Histogram& batch_size_ =
+      NewHistograms("duet_batch_size", "Windows evaluated together, once for each candidate.")
+          .Add({}, BatchBuckets());
+  Counters& windows_dropped_ =
+      NewCounters("duet_windows_dropped_total",
+                  "Windows that never started: cancelled, or too late for their deadline.");
+  prometheus::Gauge& queued_windows_ =
+      NewGauges("duet_queued_windows", "Windows waiting for a worker, once for each candidate.")
+          .Add({});
+  Gauges& load_seconds_ = NewGauges("duet_model_load_seconds", "Time to load a checkpoint.");
+  Gauges& model_state_ =
+      NewGauges("duet_model_state", "1 if the checkpoint is served, 0 if it was rejected.");
+  Gauges& model_last_load_ =
+      NewGauges("duet_model_last_load_successful",
+                "1 if the checkpoint on disk was loaded, 0 if it was rejected, "
+                "even if an earlier load of it is served.");
+  Counters& model_loads_ =
+      NewCounters("duet_model_loads_total", "Loads of checkpoints, by result.");
+  prometheus::Gauge& folders_skipped_ =
+      NewGauges("duet_model_folders_skipped",
+                "Folders in the model repository that hold no checkpoint.")
+          .Add({});
+  Counters& reloads_ =
+      NewCounters("duet_reloads_total", "Requested reloads of settings and models, by result.");
+  prometheus::Counter& log_lines_dropped_ =
+      NewCounters("duet_log_lines_dropped_total",
+                  "Log lines lost because their reader was too slow or writing failed.")
+          .Add({});
+  prometheus::Counter& self_check_failures_ =
+      NewCounters("duet_self_check_failures_total",
+                  "Times that the server did not answer its own call.")
+          .Add({});
+  Counters& refusals_ =
+      NewCounters("duet_refusals_total", "Rejected RPCs, by the reason in their error details.");
+  Counters& caller_calls_ = NewCounters(
+      "duet_caller_calls_total", "Completed RPCs of the access file's callers, by status code.");
+  Counters& secrets_reloads_ = NewCounters(
+      "duet_secrets_reloads_total", "Reloads of changed certificates or of a changed access file.");
+  Gauges& secrets_last_reload_ =
+      NewGauges("duet_secrets_last_reload_successful",
+                "1 if the certificates or access file on disk are in use, 0 "
+                "if they were rejected and the previous ones are.");
   std::atomic<std::uint64_t> batches_{0};
   ReadValues read_;
   common::Mutex render_mutex_;  // one scrape at a time updates the values that it reads

@@ -18,7 +18,7 @@
 #include "model/cpu_engine/kernels/gemm_int16.h"
 #include "model/cpu_engine/kernels/instruction_set.h"
 #include "model/torch_plugin/torch_plugin.h"
-#include "server/lifecycle/heap_trimmer.h"
+#include "server/lifecycle/process_end.h"
 #include "server/lifecycle/run_server.h"
 
 namespace {

@@ -1,7 +1,8 @@
 #include "server/security/access_control.h"
 
+#include <openssl/crypto.h>
+
 #include <algorithm>
-#include <utility>
 
 namespace duet::server::security {
 namespace {
@@ -14,7 +15,10 @@ std::shared_ptr<const KnownCaller> FindByToken(const Callers& callers, const std
   std::shared_ptr<const KnownCaller> found;
   for (const auto& known : callers) {
     for (const std::string& theirs : known->caller.token_digests) {
-      if (EqualInConstantTime(theirs, digest)) found = known;
+      if (theirs.size() == digest.size() &&
+          CRYPTO_memcmp(theirs.data(), digest.data(), digest.size()) == 0) {
+        found = known;
+      }
     }
   }
   return found;
@@ -48,23 +52,6 @@ std::optional<double> CallerUsage::TakeCall(double per_second, common::TimePoint
   return std::nullopt;
 }
 
-bool CallerUsage::TakeFrames(std::int64_t frames, std::int64_t limit) {
-  common::MutexLock lock(mutex_);
-  if (frames > limit - frames_) return false;
-  frames_ += frames;
-  return true;
-}
-
-void CallerUsage::GiveFrames(std::int64_t frames) {
-  common::MutexLock lock(mutex_);
-  frames_ -= frames;
-}
-
-std::int64_t CallerUsage::frames() const {
-  common::MutexLock lock(mutex_);
-  return frames_;
-}
-
 void AccessControl::Replace(std::vector<Caller> callers) {
   auto next = std::make_shared<List>();
   common::MutexLock lock(mutex_);
@@ -93,9 +80,8 @@ AccessControl::Decision AccessControl::Decide(const Credentials& credentials, Ro
   decision.answer = Answer::kAllowed;
   if (caller.roles.count(role) == 0) {
     decision.answer = Answer::kWrongRole;
-  } else if (caller.limits.calls_per_second.has_value()) {
-    const auto wait =
-        decision.caller->usage->TakeCall(*caller.limits.calls_per_second, clock_.Now());
+  } else if (caller.calls_per_second.has_value()) {
+    const auto wait = decision.caller->usage->TakeCall(*caller.calls_per_second, clock_.Now());
     decision.retry_seconds = wait.value_or(0);
     if (wait.has_value()) decision.answer = Answer::kTooManyCalls;
   }

@@ -27,20 +27,14 @@ enum class Role {
 // "synthesise" or "admin".
 inline const char* RoleName(Role role) { return role == Role::kAdmin ? "admin" : "synthesise"; }
 
-// Limits of a caller; an absent one means no limit of its own.
-struct CallerLimits {
-  std::optional<double> calls_per_second;  // above 0; bursts of up to one second's calls
-  // Leader frames of calls being answered, each counted once for each candidate; at least 1.
-  std::optional<std::int64_t> frames_in_flight;
-};
-
-// A caller: its credentials, its roles and its limits.
+// A caller: its credentials, its roles and its limit.
 struct Caller {
   std::string name;  // for logs and metrics
   std::set<Role> roles;
   std::vector<std::string> token_digests;      // SHA-256 in lower-case hex, 64 characters each
   std::vector<std::string> certificate_names;  // as the client's certificate has them
-  CallerLimits limits;
+  // Above 0; bursts of up to one second's calls. Absent: no limit.
+  std::optional<double> calls_per_second;
 };
 
 // The current usage of one caller.
@@ -52,50 +46,12 @@ class CallerUsage {
   // long-term rate is `per_second`; after a pause, the calls of one second may arrive at once.
   std::optional<double> TakeCall(double per_second, common::TimePoint now);
 
-  // Counts frames and returns true, unless the total would exceed `limit`.
-  bool TakeFrames(std::int64_t frames, std::int64_t limit);
-  void GiveFrames(std::int64_t frames);
-  std::int64_t frames() const;
-
  private:
-  mutable common::Mutex mutex_;
+  common::Mutex mutex_;
   double tokens_ DUET_GUARDED_BY(mutex_) = 0;  // calls allowed now
   std::optional<common::TimePoint> counted_
       DUET_GUARDED_BY(mutex_);  // when tokens_ was last updated
-  std::int64_t frames_ DUET_GUARDED_BY(mutex_) = 0;
 };
-
-// Frames that a call holds. The destructor returns them.
-class FrameLease {
- public:
-  FrameLease() = default;
-  FrameLease(std::shared_ptr<CallerUsage> usage, std::int64_t frames)
-      : usage_(std::move(usage)), frames_(frames) {}
-  FrameLease(FrameLease&&) = default;
-  FrameLease& operator=(FrameLease&& other) noexcept {
-    std::swap(usage_, other.usage_);
-    std::swap(frames_, other.frames_);
-    return *this;
-  }
-  ~FrameLease() {
-    if (usage_ != nullptr) usage_->GiveFrames(frames_);
-  }
-
- private:
-  std::shared_ptr<CallerUsage> usage_;
-  std::int64_t frames_ = 0;
-};
-
-// Compares two texts in a time that depends only on their lengths. A time that revealed the number
-// of correct characters would let an attacker find a secret character by character.
-inline bool EqualInConstantTime(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  volatile unsigned char difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference = static_cast<unsigned char>(difference | (a[i] ^ b[i]));
-  }
-  return difference == 0;
-}
 
 // The credentials that a call carries.
 struct Credentials {

@@ -2,8 +2,6 @@
 
 #include <iterator>
 #include <map>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -15,9 +13,6 @@
 
 namespace duet::server::security {
 namespace {
-
-// Retry delay while frames are in flight: about the time between two windows of a long call.
-constexpr absl::Duration kFramesDelay = absl::Seconds(1);
 
 std::vector<std::string> CertificateNames(const grpc::ServerContextBase& context) {
   std::vector<std::string> names;
@@ -55,27 +50,10 @@ bool IsFromThisMachine(const grpc::ServerContextBase& context) {
          absl::StartsWith(peer, "ipv6:[::1]:") || absl::StartsWith(peer, "unix:");
 }
 
-absl::Status Refusal(absl::StatusCode code, absl::string_view message, absl::string_view reason,
-                     const std::map<std::string, std::string>& metadata = {}) {
-  absl::Status status(code, message);
-  common::AddErrorInfo(status, reason, metadata);
-  return status;
-}
-
 absl::Status RoleRefusal(Role role) {
-  return Refusal(absl::StatusCode::kPermissionDenied,
-                 absl::StrCat("the caller does not have the role ", RoleName(role)),
-                 common::kReasonRoleMissing, {{"role", RoleName(role)}});
-}
-
-absl::Status CallRateRefusal(const Caller& caller, double retry_seconds) {
-  const std::string limit = absl::StrCat(caller.limits.calls_per_second.value_or(0));
-  absl::Status status = Refusal(
-      absl::StatusCode::kResourceExhausted,
-      absl::StrCat("expected at most ", limit, " calls per second from this caller, got more"),
-      common::kReasonCallRate, {{"calls_per_second", limit}});
-  common::AddRetryInfo(status, absl::Seconds(retry_seconds));
-  return status;
+  return common::WithInfo(absl::PermissionDeniedError(
+                              absl::StrCat("the caller does not have the role ", RoleName(role))),
+                          common::kReasonRoleMissing, {{"role", RoleName(role)}});
 }
 
 absl::Status ToStatus(const AccessControl::Decision& decision, Role role) {
@@ -83,48 +61,35 @@ absl::Status ToStatus(const AccessControl::Decision& decision, Role role) {
     case AccessControl::Answer::kAllowed:
       break;
     case AccessControl::Answer::kNoCredentials:
-      return Refusal(absl::StatusCode::kUnauthenticated,
-                     "expected \"authorization: Bearer TOKEN\" in the call's metadata, or a client "
-                     "certificate where the server asks for one, got neither",
-                     common::kReasonCredentialsMissing);
+      return common::WithInfo(
+          absl::UnauthenticatedError(
+              "expected \"authorization: Bearer TOKEN\" in the call's metadata, or a client "
+              "certificate where the server asks for one, got neither"),
+          common::kReasonCredentialsMissing);
     case AccessControl::Answer::kWrongToken:
-      return Refusal(
-          absl::StatusCode::kUnauthenticated,
-          "authorization: expected \"Bearer TOKEN\" with a token known here, got another",
+      return common::WithInfo(
+          absl::UnauthenticatedError(
+              "authorization: expected \"Bearer TOKEN\" with a token known here, got another"),
           common::kReasonCredentialsInvalid);
     case AccessControl::Answer::kUnknownCertificate:
-      return Refusal(absl::StatusCode::kPermissionDenied,
-                     "expected a client certificate of a listed caller, got another",
-                     common::kReasonCallerUnknown);
+      return common::WithInfo(absl::PermissionDeniedError(
+                                  "expected a client certificate of a listed caller, got another"),
+                              common::kReasonCallerUnknown);
     case AccessControl::Answer::kWrongRole:
       return RoleRefusal(role);
-    case AccessControl::Answer::kTooManyCalls:
-      return CallRateRefusal(decision.caller->caller, decision.retry_seconds);
+    case AccessControl::Answer::kTooManyCalls: {
+      const std::string limit = absl::StrCat(*decision.caller->caller.calls_per_second);
+      absl::Status status = absl::ResourceExhaustedError(
+          absl::StrCat("expected at most ", limit, " calls per second from this caller, got more"));
+      common::AddRetryInfo(status, absl::Seconds(decision.retry_seconds));
+      return common::WithInfo(std::move(status), common::kReasonCallRate,
+                              {{"calls_per_second", limit}});
+    }
   }
   return absl::OkStatus();
 }
 
 }  // namespace
-
-absl::Status CallPass::HoldFrames(std::int64_t frames) {
-  if (caller_ == nullptr || !caller_->caller.limits.frames_in_flight.has_value()) {
-    return absl::OkStatus();
-  }
-  const std::int64_t limit = *caller_->caller.limits.frames_in_flight;
-  if (caller_->usage->TakeFrames(frames, limit)) {
-    frames_ = FrameLease(caller_->usage, frames);
-    return absl::OkStatus();
-  }
-  absl::Status status =
-      Refusal(absl::StatusCode::kResourceExhausted,
-              absl::StrCat("expected at most ", limit,
-                           " frames of this caller in progress, each counted once for each "
-                           "candidate, got a call of ",
-                           frames),
-              common::kReasonFramesInFlight, {{"frames_in_flight", absl::StrCat(limit)}});
-  if (frames <= limit) common::AddRetryInfo(status, kFramesDelay);
-  return status;
-}
 
 CallPass CallGuard::Admit(const grpc::ServerContextBase& context, Role role) const {
   const Credentials credentials = CredentialsOf(context);
@@ -132,13 +97,12 @@ CallPass CallGuard::Admit(const grpc::ServerContextBase& context, Role role) con
   const std::string certificate = names.empty() ? "" : names.front();
   if (access_ == nullptr) {
     const bool allowed = role == Role::kSynthesise || IsFromThisMachine(context);
-    return {allowed ? absl::OkStatus() : RoleRefusal(role), certificate, nullptr};
+    return {allowed ? absl::OkStatus() : RoleRefusal(role), certificate};
   }
-  AccessControl::Decision decision = access_->Decide(credentials, role);
-  const absl::Status status = ToStatus(decision, role);
-  if (decision.caller == nullptr) return {status, certificate, nullptr};
-  std::string name = decision.caller->caller.name;
-  return {status, std::move(name), std::move(decision.caller)};
+  const AccessControl::Decision decision = access_->Decide(credentials, role);
+  const bool is_listed = decision.caller != nullptr;
+  return {ToStatus(decision, role), is_listed ? decision.caller->caller.name : certificate,
+          is_listed};
 }
 
 }  // namespace duet::server::security

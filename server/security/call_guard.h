@@ -13,35 +13,13 @@
 
 namespace duet::server::security {
 
-// The result of admitting a call: whether it is allowed, its caller if known, and the frames that
-// it holds of the caller's limit.
-//
-// Threads: not safe to call concurrently.
-class CallPass {
- public:
-  CallPass() = default;  // for a call without limits
-  CallPass(absl::Status status, std::string name, std::shared_ptr<const KnownCaller> caller)
-      : status_(std::move(status)), name_(std::move(name)), caller_(std::move(caller)) {}
-
-  // OK, or the reason why the call is rejected.
-  const absl::Status& status() const { return status_; }
+// Whether a call is allowed, and who makes it.
+struct CallPass {
+  absl::Status status;  // OK, or the reason why the call is rejected
   // The caller's name in the access file, otherwise the first name in its certificate; empty for an
   // unknown caller. A rejected caller can have a name, too.
-  const std::string& name() const { return name_; }
-
-  bool is_listed() const { return caller_ != nullptr; }
-
-  // Counts frames against the caller's limit, until Release or the end of the pass.
-  // Fails with RESOURCE_EXHAUSTED if that exceeds the limit, with RetryInfo unless the frames alone
-  // do.
-  absl::Status HoldFrames(std::int64_t frames);
-  void Release() { frames_ = FrameLease(); }
-
- private:
-  absl::Status status_;
-  std::string name_;
-  std::shared_ptr<const KnownCaller> caller_;
-  FrameLease frames_;
+  std::string name;
+  bool is_listed = false;  // in the access file
 };
 
 // Identifies the caller of a call by its certificate and its `authorization: Bearer TOKEN`, and

@@ -1,6 +1,10 @@
 #ifndef DUET_SERVER_SECURITY_SECRET_FILES_H_
 #define DUET_SERVER_SECURITY_SECRET_FILES_H_
 
+#include <grpcpp/security/server_credentials.h>
+
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -16,9 +20,90 @@
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
 #include "server/security/access_control.h"
-#include "server/security/tls_certificates.h"
 
 namespace duet::server::security {
+
+// The server's certificate and key, and the authorities that it trusts. PEM text.
+struct TlsMaterial {
+  std::string certificate_chain;  // the server's own certificate first
+  std::string private_key;
+  std::string client_authorities;  // sign client certificates; empty: clients need none
+
+  bool operator==(const TlsMaterial& other) const {
+    return certificate_chain == other.certificate_chain && private_key == other.private_key &&
+           client_authorities == other.client_authorities;
+  }
+};
+
+// The files of TlsMaterial. No certificate file: no TLS.
+struct TlsFiles {
+  std::filesystem::path certificate;
+  std::filesystem::path key;
+  std::filesystem::path client_ca;  // empty: clients need no certificate
+};
+
+// Reads the files without checking their content. Fails with one line for each file that cannot be
+// read: the setting and the file.
+absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files);
+
+// Checks that a handshake can succeed: certificates and key are PEM, the key belongs to the first
+// certificate, and that certificate is valid at `now`. Returns the end of its validity.
+// Fails with INVALID_ARGUMENT and one line for each wrong setting; never with any part of the key.
+absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now);
+
+// The certificates for the next handshake. They can be replaced at any time; open connections keep
+// theirs.
+//
+// Threads: safe to call concurrently. Uses neither gRPC nor abseil's synchronisation.
+class TlsCertificates {
+ public:
+  struct Current {
+    std::shared_ptr<const TlsMaterial> material;
+    std::uint64_t generation = 0;  // changes with each Replace
+  };
+
+  explicit TlsCertificates(TlsMaterial material);
+
+  void Replace(TlsMaterial material);
+  Current current() const;
+
+ private:
+  mutable common::Mutex mutex_;
+  Current current_ DUET_GUARDED_BY(mutex_);
+};
+
+// Makes credentials for one listening port. Every handshake reads `certificates`, so that a
+// replacement applies from the next connection. Supports TLS 1.2 and 1.3. A client certificate is
+// required and verified if the material has client authorities.
+//
+// `certificates` outlives the server. Call it once for each port. Whether clients need a
+// certificate is fixed here: later material may have other client authorities, but must have some
+// if and only if this one has.
+std::shared_ptr<grpc::ServerCredentials> MakeServerCredentials(const TlsCertificates& certificates);
+
+// Every call searches the whole list.
+inline constexpr std::size_t kMaxCallers = 1000;
+
+// Maximum number of mistakes that are reported for a file.
+inline constexpr std::size_t kMaxAccessMistakes = 20;
+
+// Parses an access file: one caller per line, words separated by blanks, comments after `#`.
+//
+//   # name    roles             known by                        limit
+//   studio-a  synthesise        sha256:9f86d081...0f00a08       calls_per_second=20
+//   studio-b  synthesise        cert:b.example.com
+//   ops       synthesise,admin  sha256:60303ae2...7ba3b0dd2e2   sha256:fd61a03a...af6b2fc0c
+//
+// A name is 1 to 64 letters, digits, '-', '_' and '.'. Tokens (their SHA-256, never the token) and
+// names in its certificate identify a caller; all of them share its limit.
+//
+// `certificates`: whether clients have certificates (tls_client_ca_file). Without them, cert:
+// identifies no caller. A file without callers is a mistake, because it would reject every call.
+//
+// Errors: INVALID_ARGUMENT, one line "source:line: expected ..., got ..." for each of the first
+//         kMaxAccessMistakes wrong lines; never a whole digest.
+absl::StatusOr<std::vector<Caller>> ParseAccessList(std::string_view text, std::string_view source,
+                                                    bool certificates = true);
 
 // A changed file, or changed files that belong together, that were read again.
 struct Reload {

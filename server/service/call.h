@@ -2,7 +2,10 @@
 #define DUET_SERVER_SERVICE_CALL_H_
 
 #include <google/protobuf/message.h>
+#include <grpcpp/impl/service_type.h>
+#include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +23,7 @@
 #include "server/metrics/call_record.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
+#include "server/service/reply_source.h"
 #include "server/service/share_pool.h"
 
 namespace duet::server::service {
@@ -49,52 +53,6 @@ class Transport {
   virtual void BreakOff(const absl::Status& reason) = 0;
 };
 
-// What a source has for its call now. If neither field is set, nothing is ready: on_progress will
-// be called.
-struct NextReply {
-  // The next message of the stream. Valid until the next call of ReplySource::Next.
-  const google::protobuf::Message* message = nullptr;
-  // Set after the last message: OK, or why the stream ends early.
-  std::optional<absl::Status> end;
-};
-
-// How a source reaches its call, from any thread, also after the source was destroyed.
-struct SourceEvents {
-  std::function<void()> on_progress;                      // Next may have become ready
-  std::function<bool(double timeout_seconds)> read_next;  // see Call::ReadNext
-};
-
-// Makes the replies of one streaming call, in order, and takes its further messages. A Call owns
-// it.
-//
-// Threads: the call serialises Start, Next and Report, and it serialises OnMessage and
-// OnEndOfMessages. Anything else may run concurrently. No method may block.
-class ReplySource {
- public:
-  virtual ~ReplySource() = default;
-
-  // Begins to work. If it fails, the call ends with this status before any reply. Called once,
-  // before everything else.
-  virtual absl::Status Start(SourceEvents events) = 0;
-  // Returns the next reply. Adds what it contains to `scope.record()`. Not called again after
-  // NextReply::end.
-  virtual NextReply Next(CallScope& scope) = 0;
-  // Stops work that has not started. No reply is taken afterwards.
-  virtual void Cancel() = 0;
-  // Adds what is known once the call is over: model, options, time spent. Called once, last.
-  virtual void Report(metrics::CallRecord& record) const = 0;
-
-  // The rest is for methods that take several messages.
-
-  // A message has arrived. The next one is read only after read_next, so a call never holds more
-  // than one message that was not handled.
-  virtual void OnMessage(grpc::ByteBuffer) {}
-  // The caller sends no more messages. Called at most once.
-  virtual void OnEndOfMessages() {}
-  // The server has begun to drain; the call goes on. Called at most once.
-  virtual void OnDraining() {}
-};
-
 // One call from its headers to its status. Waits for the first message, has it handled, and then
 // writes the replies of a source as fast as the caller reads them, one at a time. The first event
 // that ends the call determines its status: a refusal, the end of the source, cancellation, a time
@@ -120,7 +78,7 @@ class Call final : public std::enable_shared_from_this<Call> {
   };
   // What a call needs to stream its replies.
   struct Stream {
-    std::unique_ptr<ReplySource> source;
+    std::shared_ptr<ReplySource> source;
     ShareLease held_bytes;  // of the request, until the call ends
     common::TimePoint deadline = common::TimePoint::max();
     // Maximum time that one reply may wait for its reader.
@@ -139,9 +97,6 @@ class Call final : public std::enable_shared_from_this<Call> {
 
   // While the first message is handled: why the call is to end, if that is known.
   std::optional<absl::Status> ended_meanwhile() const;
-  // Takes frames from the caller's share, each once for each candidate. Returns RESOURCE_EXHAUSTED
-  // if too few are left.
-  absl::Status HoldFrames(std::int64_t frames) { return parts_.scope->HoldFrames(frames); }
   // Ends the handling with an error. Everything the call holds is released first.
   void Refuse(const absl::Status& reason);
   // Ends the handling with one reply, for which the caller closes the returned scope.
@@ -232,52 +187,96 @@ class Call final : public std::enable_shared_from_this<Call> {
 // Threads: safe to call concurrently.
 class ActiveCalls {
  public:
+  // Counts a call until gRPC has finished it: its status has been sent.
+  class Ticket {
+   public:
+    explicit Ticket(ActiveCalls& calls) : calls_(calls) { calls_.CountOpen(1); }
+    ~Ticket() { calls_.CountOpen(-1); }
+    Ticket(const Ticket&) = delete;
+    Ticket& operator=(const Ticket&) = delete;
+
+   private:
+    ActiveCalls& calls_;
+  };
+
   void Add(const std::shared_ptr<Call>& call);
   // Notifies all calls, and every call that is added later, that the server drains.
   void Drain();
   // Ends all calls, and every call that is added later.
   void AbortAll(const absl::Status& reason);
-  // Breaks off the writes of calls that were aborted.
-  void BreakOffWrites();
+  // Waits until gRPC has finished every call, at most `seconds`, then breaks off the writes of
+  // those that were aborted.
+  void FinishAborted(double seconds);
   void CheckTime(common::TimePoint now);
 
  private:
   std::vector<std::shared_ptr<Call>> All();
-
-  common::Mutex mutex_;
-  bool draining_ DUET_GUARDED_BY(mutex_) = false;
-  std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why calls added later end at once
-  std::vector<std::weak_ptr<Call>> calls_ DUET_GUARDED_BY(mutex_);
-  std::size_t look_at_ DUET_GUARDED_BY(mutex_) =
-      64;  // number of calls at which ended ones are removed
-};
-
-// Counts the calls that gRPC has not finished. Their status may not have been sent yet.
-//
-// Threads: safe to call concurrently.
-class OpenCalls {
- public:
-  // Counts one call during its lifetime.
-  class Ticket {
-   public:
-    explicit Ticket(OpenCalls& calls) : calls_(calls) { calls_.Add(1); }
-    ~Ticket() { calls_.Add(-1); }
-    Ticket(const Ticket&) = delete;
-    Ticket& operator=(const Ticket&) = delete;
-
-   private:
-    OpenCalls& calls_;
-  };
-
-  // Waits until there are none, at most `seconds`.
-  void WaitForNone(double seconds);
-
- private:
-  void Add(int calls);
+  void CountOpen(int calls);
 
   common::Mutex mutex_;
   common::CondVar changed_;
-  int open_ DUET_GUARDED_BY(mutex_) = 0;
+  int open_ DUET_GUARDED_BY(mutex_) = 0;  // tickets
+  bool draining_ DUET_GUARDED_BY(mutex_) = false;
+  std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why calls added later end at once
+  std::vector<std::weak_ptr<Call>> calls_ DUET_GUARDED_BY(mutex_);
+  // Number of calls at which ended ones are removed.
+  std::size_t look_at_ DUET_GUARDED_BY(mutex_) = 64;
+};
+
+// A gRPC service whose methods receive calls when their headers arrive, and messages as bytes.
+// Services generated by protoc receive a call after its message was read, whatever its size and
+// however many others are being read. That is too late for admission.
+class RawService : public grpc::Service {
+ protected:
+  using Reactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
+
+  // Serves `method`, a string literal "/package.Service/Method". `open` must not block. It returns
+  // a reactor that deletes itself.
+  void Serve(const char* method, std::function<Reactor*(grpc::CallbackServerContext*)> open);
+
+ private:
+  int methods_ = 0;
+};
+
+// Connects a call of any method to gRPC. Deletes itself when gRPC has finished with it.
+//
+// A bidirectional reactor, even for methods that take or return one message. For all other kinds,
+// gRPC reads the request before it reports the call, so memory would depend on what callers send.
+// On the wire, a stream of one message and a single message are the same.
+class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
+                          public Transport {
+ public:
+  // Handles the first message: refuses, answers or runs the call.
+  using Handler = std::function<void(CallReactor&, const std::shared_ptr<Call>&, grpc::ByteBuffer)>;
+
+  // `calls` outlives the reactor.
+  CallReactor(grpc::CallbackServerContext& context, ActiveCalls& calls)
+      : context_(context), open_(calls) {}
+
+  // Reads the first message of an admitted call. A refused call needs only Finish.
+  void Receive(std::shared_ptr<Call> call, Handler handle);
+  // Replies with one message, after Call::Answer.
+  void Respond(CallScope& scope, grpc::ByteBuffer response);
+
+  void Read() override { StartRead(&request_); }
+  void Write(const google::protobuf::Message& reply) override;
+  void Finish(CallScope& scope, const absl::Status& status) override;
+  void BreakOff(const absl::Status& reason) override;
+
+  void OnReadDone(bool ok) override;
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override { delete this; }
+
+  const grpc::CallbackServerContext& context() const { return context_; }
+
+ private:
+  grpc::CallbackServerContext& context_;
+  const ActiveCalls::Ticket open_;
+  Handler handle_;              // null once the first message has arrived
+  std::shared_ptr<Call> call_;  // null: refused at the headers
+  grpc::ByteBuffer request_;    // being read
+  grpc::ByteBuffer reply_;      // being written
 };
 
 }  // namespace duet::server::service

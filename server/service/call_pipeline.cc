@@ -5,17 +5,14 @@
 #include <netinet/in.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <random>
-#include <string>
-#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/request_id.h"
+#include "server/common/error_details.h"
 #include "server/service/refusals.h"
 #include "server/service/wire.h"
 
@@ -27,8 +24,11 @@ OpenedCall CallPipeline::Open(const grpc::ServerContextBase& context,
   OpenedCall opened;
   opened.client = identity.client;
   opened.scope = std::make_unique<CallScope>(method, std::move(identity), observers_, clock_);
-  const metrics::CallRecord& record = opened.scope->record();
-  opened.status = opened.scope->Enter(guard_.Admit(context, role_));
+  security::CallPass pass = guard_.Admit(context, role_);
+  metrics::CallRecord& record = opened.scope->record();
+  record.caller = std::move(pass.name);
+  record.caller_is_listed = pass.is_listed;
+  opened.status = std::move(pass.status);
   // A listed caller is one client, whatever address it calls from.
   if (record.caller_is_listed) opened.client = "caller:" + record.caller;
   return opened;
@@ -67,16 +67,8 @@ CallScope::CallScope(const metrics::MethodInfo& method, CallIdentity identity,
   for (metrics::CallObserver* observer : observers_) observer->CallStarted(method);
 }
 
-absl::Status CallScope::Enter(security::CallPass pass) {
-  pass_ = std::move(pass);
-  record_.caller = pass_.name();
-  record_.caller_is_listed = pass_.is_listed();
-  return pass_.status();
-}
-
 void CallScope::Finish(const absl::Status& status) {
   // A caller that has its status has its share as well.
-  pass_.Release();
   record_.status = status;
   record_.total_seconds = ElapsedSeconds();
   for (metrics::CallObserver* observer : observers_) observer->CallFinished(record_);

@@ -15,7 +15,6 @@
 
 #include "absl/status/status.h"
 #include "server/common/clock.h"
-#include "server/common/grpc_status.h"
 #include "server/metrics/call_record.h"
 #include "server/security/call_guard.h"
 
@@ -63,11 +62,6 @@ class CallScope {
   CallScope(const metrics::MethodInfo& method, CallIdentity identity,
             const std::vector<metrics::CallObserver*>& observers, const common::Clock& clock);
 
-  // Keeps the guard's pass until Finish, and returns its status: OK if the call may proceed.
-  absl::Status Enter(security::CallPass pass);
-  // Takes frames from the caller's quota. Returns RESOURCE_EXHAUSTED if too few are left.
-  absl::Status HoldFrames(std::int64_t frames) { return pass_.HoldFrames(frames); }
-
   // Filled in while the call runs.
   metrics::CallRecord& record() { return record_; }
   double ElapsedSeconds() const { return common::SecondsBetween(begin_, clock_.Now()); }
@@ -79,7 +73,6 @@ class CallScope {
   const common::Clock& clock_;
   const common::TimePoint begin_;
   metrics::CallRecord record_;
-  security::CallPass pass_;
 };
 
 // A call whose headers have arrived. Its message has not been read.
@@ -93,7 +86,7 @@ struct OpenedCall {
 //
 // In:   Open, at the headers: identity and scope (from here on the call is counted), guard.
 //       Admission follows, then the message (Call). Read: size -> bounds -> parser.
-// Out:  Close: observers -> status and trailers. When a caller receives its status, the metrics
+// Out:  Report: observers -> trailers, then the status. When a caller receives it, the metrics
 //       already contain the call.
 //
 // Threads: const methods are safe to call concurrently.
@@ -122,13 +115,6 @@ class CallPipeline {
   // Reports a call that ends, and sets its trailers.
   static void Report(CallScope& scope, const absl::Status& status,
                      grpc::ServerContextBase& context);
-  // Ends a call: reports it, then finishes `reactor` with its status.
-  template <typename Reactor>
-  static void Close(CallScope& scope, const absl::Status& status, grpc::ServerContextBase& context,
-                    Reactor& reactor) {
-    Report(scope, status, context);
-    reactor.Finish(common::ToGrpcStatus(status));
-  }
 
  private:
   const std::size_t max_request_bytes_;

@@ -1,25 +1,17 @@
 #include "server/service/clip_replies.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <string>
 #include <utility>
 
-#include "model/engine/candidates.h"
+#include "absl/strings/str_cat.h"
+#include "absl/types/span.h"
+#include "model/motion/vec3.h"
 #include "server/service/refusals.h"
-#include "server/service/reply_mapping.h"
 
 namespace duet::server::service {
 namespace {
-
-// The status that ends the call after one of its windows failed.
-absl::Status EndAfter(const absl::Status& error, metrics::CallRecord& record) {
-  return WindowFailure(error, record.request_id, &record.cause);
-}
-
-ClipStreamOptions WithPriority(ClipStreamOptions options, batching::Priority priority) {
-  options.priority = priority;
-  return options;
-}
 
 v1::MotionGrade ToMessage(const body::Grade& grade) {
   v1::MotionGrade message;
@@ -37,107 +29,130 @@ v1::MotionGrade ToMessage(const body::Grade& grade) {
 
 }  // namespace
 
-ClipReplies::ClipReplies(std::shared_ptr<const engine::Synthesizer> model, ValidatedRequest request,
-                         ClipStreamOptions options, batching::WindowScheduler& scheduler,
-                         ServerBuild build)
-    : model_(std::move(model)),
+absl::Status CheckWindow(const engine::WindowResult& result, int frames, int joints) {
+  if (!result.ok()) return result.status();
+  const absl::Span<const motion::Vec3> positions = result->all();
+  if (result->joint_count() != joints || result->frame_count() != frames ||
+      positions.size() % static_cast<std::size_t>(joints) != 0) {
+    return absl::InternalError(absl::StrCat(
+        "model: expected ", frames, " frames of ", joints, " joints, got ", positions.size(),
+        " positions in frames of ", result->joint_count(), " joints"));
+  }
+  if (!std::all_of(positions.begin(), positions.end(), motion::IsFinite)) {
+    return absl::InternalError("model: expected finite positions, got one that is not finite");
+  }
+  return absl::OkStatus();
+}
+
+void ReportOptions(const engine::ModelDescription& model, const engine::SynthesisOptions& options,
+                   batching::Priority priority, metrics::CallRecord& record) {
+  record.model = model.name;
+  record.version = model.version;
+  record.priority = PriorityName(priority);
+  record.seed = options.sampling.seed;
+  record.variety = options.sampling.variety;
+  record.candidates = engine::CandidateCount(model, options.sampling);
+  record.clean_up = *options.clean_up;
+}
+
+ClipReplies::ClipReplies(ClipParts parts, ValidatedRequest request)
+    : parts_(std::move(parts)),
       options_(request.clip.options),
       priority_(request.priority),
       mapping_(std::move(request.reply)),
       chunk_frames_(request.chunk_frames),
-      build_(std::move(build)),
-      on_progress_(std::make_shared<std::function<void()>>()),
-      stream_(std::make_shared<ClipStream>(model_, std::move(request.clip),
-                                           WithPriority(std::move(options), priority_), scheduler,
-                                           [on_progress = on_progress_] { (*on_progress)(); })) {}
+      cancelled_(std::make_shared<std::atomic<bool>>(false)),
+      clip_(parts_.model->description(), std::move(request.clip)),
+      ready_(0, parts_.model->description().skeleton.joint_count()) {}
 
 absl::Status ClipReplies::Start(SourceEvents events) {
-  *on_progress_ = std::move(events.on_progress);
-  const absl::Status scheduled = stream_->Start();
+  on_progress_ = std::move(events.on_progress);
+  {
+    common::MutexLock lock(mutex_);
+    in_flight_ = true;
+  }
+  const absl::Status scheduled = ScheduleNext(/*continues_call=*/false);
   return scheduled.ok() ? scheduled : QueueRefusal(scheduled);
 }
 
-NextReply ClipReplies::Next(CallScope& scope) {
-  switch (next_) {
-    case Part::kHeader:
-      return NextHeader(scope);
-    case Part::kFrames:
-      return NextFrames(scope);
-    case Part::kEnd:
-      break;
-  }
-  return {nullptr, absl::OkStatus()};
-}
-
-NextReply ClipReplies::NextHeader(CallScope& scope) {
-  if (mapping_.rig) {
-    first_part_ = stream_->Take(chunk_frames_);
-    if (first_part_.kind == ClipPart::Kind::kPending) return {};
-    if (first_part_.kind == ClipPart::Kind::kFailed) {
-      return {nullptr, EndAfter(first_part_.error, scope.record())};
+NextReply ClipReplies::Next(metrics::CallRecord& record) {
+  if (next_ == Part::kEnd) return {nullptr, absl::OkStatus()};
+  const bool needs_frames = next_ == Part::kFrames || mapping_.rig.has_value();
+  if (needs_frames && next_frames_.empty()) {
+    switch (Take()) {
+      case Ready::kNothing:
+        return {};
+      case Ready::kFailed:
+        return {nullptr, WindowFailure(error(), record.request_id, &record.cause)};
+      case Ready::kAllTaken:
+        FillSummary(record);
+        next_ = Part::kEnd;
+        return {&reply_, {}};
+      case Ready::kFrames:
+        break;
     }
-    rig_ = std::make_unique<ReplyRig>(*mapping_.rig, mapping_.coordinates, mapping_.levelling,
-                                      mapping_.joints, first_part_.poses);
   }
-  FillHeader(scope.record());
-  next_ = Part::kFrames;
+  if (next_ == Part::kFrames) {
+    FillChunk(record);
+  } else {
+    FillHeader(record);
+    next_ = Part::kFrames;
+  }
   return {&reply_, {}};
 }
 
-NextReply ClipReplies::NextFrames(CallScope& scope) {
-  // Pending unless it is the first part of a reply with rotations.
-  ClipPart part = std::exchange(first_part_, {});
-  if (part.kind == ClipPart::Kind::kPending) part = stream_->Take(chunk_frames_);
-  switch (part.kind) {
-    case ClipPart::Kind::kPending:
-      return {};
-    case ClipPart::Kind::kFrames:
-      FillChunk(std::move(part), scope);
-      return {&reply_, {}};
-    case ClipPart::Kind::kEnd:
-      FillSummary(scope.record());
-      next_ = Part::kEnd;
-      return {&reply_, {}};
-    case ClipPart::Kind::kFailed:
-      break;
+ClipReplies::Ready ClipReplies::Take() {
+  {
+    common::MutexLock lock(mutex_);
+    const int count = std::min(ready_.frame_count() - taken_, chunk_frames_);
+    if (!error_.ok()) return Ready::kFailed;
+    if (count == 0) {
+      return in_flight_ || clip_.HasNextWindow() ? Ready::kNothing : Ready::kAllTaken;
+    }
+    next_frames_ = motion::Poses(0, ready_.joint_count());
+    next_frames_.Append(ready_.frames(taken_, count));
+    taken_ += count;
   }
-  return {nullptr, EndAfter(part.error, scope.record())};
+  ScheduleIfWanted();
+  return Ready::kFrames;
+}
+
+absl::Status ClipReplies::error() const {
+  common::MutexLock lock(mutex_);
+  return error_;
+}
+
+ClipReplies::Stats ClipReplies::stats() const {
+  common::MutexLock lock(mutex_);
+  return stats_;
 }
 
 void ClipReplies::FillHeader(const metrics::CallRecord& record) {
   v1::SynthesisHeader& header = *reply_.mutable_header();
-  const engine::ModelDescription& model = model_->description();
-  header.set_model_name(model.name);
-  header.set_model_version(static_cast<uint32_t>(model.version));
-  for (const std::string& name : mapping_.joint_names) header.add_joint_names(name);
-  header.set_frame_rate_hz(mapping_.frame_rate_hz);
-  header.set_unit(mapping_.unit);
-  header.set_up_axis(mapping_.up_axis);
-  header.set_frame_count(static_cast<uint32_t>(stream_->frame_count()));
-  for (const std::string& name : model.classes) header.add_interaction_classes(name);
-  header.set_request_id(record.request_id);
-  header.set_seed(options_.sampling.seed);
-  header.set_variety(options_.sampling.variety);
-  header.set_candidates(static_cast<uint32_t>(Candidates()));
-  if (rig_ != nullptr) rig_->FillHeader(header);
-  header.set_engine(build_.engine);
-  header.set_server_version(build_.version);
-  header.set_clean_up(options_.clean_up.value_or(false) ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
+  FillCommonHeader(parts_.model->description(), mapping_, options_, record.request_id, header);
+  header.set_frame_count(static_cast<uint32_t>(clip_.frame_count()));
+  if (mapping_.rig) {
+    rig_ = std::make_unique<ReplyRig>(mapping_, next_frames_);
+    rig_->FillHeader(header);
+  }
+  header.set_engine(parts_.engine);
+  header.set_server_version(parts_.server_version);
 }
 
-void ClipReplies::FillChunk(ClipPart part, CallScope& scope) {
-  metrics::CallRecord& record = scope.record();
-  if (record.chunks == 0) record.first_chunk_seconds = scope.ElapsedSeconds();
+void ClipReplies::FillChunk(metrics::CallRecord& record) {
+  motion::Poses poses = std::exchange(next_frames_, {});
   v1::MotionChunk& chunk = *reply_.mutable_chunk();
   chunk.Clear();
-  if (rig_ != nullptr) rig_->AddRotations(&part.poses, chunk);
-  service::FillChunk(mapping_, part.poses, record.frames, chunk);
+  if (rig_ != nullptr) rig_->AddRotations(&poses, chunk);
+  chunk.set_first_frame(static_cast<uint32_t>(record.frames));
+  chunk.set_frame_count(static_cast<uint32_t>(poses.frame_count()));
+  AppendPositions(mapping_, poses, chunk.mutable_positions());
   ++record.chunks;
-  record.frames += static_cast<int>(chunk.frame_count());
+  record.frames += poses.frame_count();
 }
 
 void ClipReplies::FillSummary(const metrics::CallRecord& record) {
-  const ClipStreamStats stats = stream_->stats();
+  const Stats stats = this->stats();
   v1::SynthesisSummary& summary = *reply_.mutable_summary();
   summary.set_frame_count(static_cast<uint32_t>(record.frames));
   summary.set_chunk_count(static_cast<uint32_t>(record.chunks));
@@ -150,24 +165,88 @@ void ClipReplies::FillSummary(const metrics::CallRecord& record) {
                                               stats.pin_distances.end());
 }
 
-int ClipReplies::Candidates() const {
-  return engine::CandidateCount(model_->description(), options_.sampling);
-}
-
 void ClipReplies::Report(metrics::CallRecord& record) const {
-  record.model = model_->description().name;
-  record.version = model_->description().version;
-  record.priority = PriorityName(priority_);
-  record.seed = options_.sampling.seed;
-  record.variety = options_.sampling.variety;
-  record.candidates = Candidates();
-  record.clean_up = options_.clean_up.value_or(false);
-  const ClipStreamStats stats = stream_->stats();
+  ReportOptions(parts_.model->description(), options_, priority_, record);
+  const Stats stats = this->stats();
   record.windows = stats.windows;
   record.queue_seconds = stats.queue_seconds;
   record.compute_seconds = stats.compute_seconds;
   record.peak_buffered_frames = stats.peak_buffered_frames;
   record.unfamiliarity = stats.unfamiliarity;
+}
+
+bool ClipReplies::WantsWindow() const {
+  if (in_flight_ || !error_.ok() || cancelled_->load(std::memory_order_acquire)) return false;
+  const int waiting = ready_.frame_count() - taken_;
+  return waiting < parts_.buffered_frames && clip_.HasNextWindow();
+}
+
+void ClipReplies::ScheduleIfWanted() {
+  {
+    common::MutexLock lock(mutex_);
+    if (!WantsWindow()) return;
+    in_flight_ = true;
+  }
+  const absl::Status scheduled = ScheduleNext(/*continues_call=*/true);
+  if (scheduled.ok()) return;
+  common::MutexLock lock(mutex_);
+  in_flight_ = false;
+  error_ = scheduled;
+}
+
+absl::Status ClipReplies::ScheduleNext(bool continues_call) {
+  batching::WindowJob job;
+  job.model = parts_.model;
+  job.window = clip_.NextWindow();
+  job.priority = priority_;
+  job.deadline = parts_.deadline;
+  job.cancelled = cancelled_;
+  job.client = parts_.client;
+  job.continues_call = continues_call;
+  job.call_windows = clip_.window_count();
+  job.done = [self = shared_from_this()](const batching::WindowOutcome& outcome) {
+    self->OnWindow(outcome);
+  };
+  expected_frames_ = job.window.leader.frame_count();
+  return parts_.scheduler->Submit(std::move(job));
+}
+
+void ClipReplies::OnWindow(const batching::WindowOutcome& outcome) {
+  if (cancelled_->load(std::memory_order_acquire)) return;
+  const int joints = parts_.model->description().skeleton.joint_count();
+  const absl::Status status = CheckWindow(outcome.result, expected_frames_, joints);
+  motion::Poses frames;
+  if (status.ok()) {
+    frames = clip_.Accept(*outcome.result);
+    KeepMeasures();
+  }
+  Keep(status, frames, outcome.timings);
+  ScheduleIfWanted();
+  on_progress_();
+}
+
+void ClipReplies::KeepMeasures() {
+  if (clip_.HasNextWindow()) return;
+  const std::optional<double> unfamiliarity = parts_.model->Unfamiliarity(clip_.request());
+  std::optional<body::Grade> grade = clip_.grade();
+  common::MutexLock lock(mutex_);
+  stats_.unfamiliarity = unfamiliarity;
+  stats_.grade = std::move(grade);
+  stats_.pin_distances = clip_.pin_distances();
+}
+
+void ClipReplies::Keep(const absl::Status& status, const motion::Poses& frames,
+                       const batching::WindowTimings& timings) {
+  common::MutexLock lock(mutex_);
+  in_flight_ = false;
+  error_ = status;
+  stats_.windows += status.ok() ? 1 : 0;
+  stats_.queue_seconds += timings.queue_seconds;
+  stats_.compute_seconds += timings.compute_seconds;
+  ready_.DropFront(taken_);
+  taken_ = 0;
+  ready_.Append(frames.all());
+  stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, ready_.frame_count());
 }
 
 }  // namespace duet::server::service

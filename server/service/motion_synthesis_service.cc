@@ -2,27 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string>
 #include <utility>
 #include <variant>
 
 #include "duet/v1/model.pb.h"
-#include "duet/v1/synthesis.pb.h"
-#include "model/engine/candidates.h"
 #include "model/engine/live_synthesis.h"
-#include "server/registry/model_registry.h"
-#include "server/service/call_pipeline.h"
 #include "server/service/clip_replies.h"
 #include "server/service/live_replies.h"
 #include "server/service/refusals.h"
-#include "server/service/request_limits.h"
-#include "server/service/validate_live.h"
-#include "server/service/validator.h"
-#include "server/service/violations.h"
 #include "server/service/wire.h"
 
 namespace duet::server::service {
@@ -94,12 +81,6 @@ constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
 // Far above ten seconds of two motions of any skeleton at any rate.
 constexpr std::size_t kMaxLiveStartBytes = std::size_t{4} << 20;
 
-// What a call's leader frames count in its caller's quota: once for each candidate.
-std::int64_t FramesOf(const engine::ModelDescription& model,
-                      const engine::SynthesisOptions& options, int leader_frames) {
-  return std::int64_t{leader_frames} * engine::EvaluationCount(model, options.sampling);
-}
-
 // Returns a call's deadline on the scheduler's clock: the earlier one of the caller's and the
 // server's.
 common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const common::Clock& clock,
@@ -144,7 +125,7 @@ MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
 RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
                                                         const StreamMethod& method) {
   OpenedCall opened = pipeline_.Open(*context, method.info);
-  auto* reactor = new CallReactor(*context, open_calls_);
+  auto* reactor = new CallReactor(*context, calls_);
   absl::StatusOr<ShareLease> place = opened.status.ok() ? parts_.admission->Admit(opened.client)
                                                         : absl::StatusOr<ShareLease>(opened.status);
   absl::Status admitted = place.status();
@@ -163,14 +144,9 @@ RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
   reactor->Receive(MakeCall(std::move(opened), *std::move(place), *reactor),
                    [this, &method](CallReactor& received_by, const std::shared_ptr<Call>& call,
                                    grpc::ByteBuffer bytes) {
-                     Handle(method, received_by.context(), call, std::move(bytes));
+                     Handle(method, {received_by.context(), call, std::move(bytes), {}, nullptr});
                    });
   return reactor;
-}
-
-void MotionSynthesisService::FinishAborted(double seconds) {
-  open_calls_.WaitForNone(seconds);
-  calls_.BreakOffWrites();
 }
 
 std::shared_ptr<Call> MotionSynthesisService::MakeCall(OpenedCall opened, ShareLease place,
@@ -192,66 +168,65 @@ void MotionSynthesisService::CountIfLarge(const grpc::ByteBuffer& bytes) {
   if (bytes.Length() >= kLargeRequestBytes) large_request_bytes_ += bytes.Length();
 }
 
-void MotionSynthesisService::Handle(const StreamMethod& method, const Context& context,
-                                    const std::shared_ptr<Call>& call, grpc::ByteBuffer bytes) {
-  CountIfLarge(bytes);
-  const absl::Status fits = pipeline_.CheckSize(bytes, method.max_request_bytes);
+void MotionSynthesisService::Handle(const StreamMethod& method, Received received) {
+  const std::size_t size = received.bytes.Length();
+  CountIfLarge(received.bytes);
+  const absl::Status fits = pipeline_.CheckSize(received.bytes, method.max_request_bytes);
   absl::StatusOr<ShareLease> held = fits.ok()
-                                        ? parts_.admission->Hold(call->client(), bytes.Length())
+                                        ? parts_.admission->Hold(received.call->client(), size)
                                         : absl::StatusOr<ShareLease>(fits);
-  if (!held.ok()) {
-    call->Refuse(held.status());
-  } else if (bytes.Length() >= kLargeRequestBytes) {
-    HandleElsewhere(method, context, call, std::move(bytes), *std::move(held));
+  if (!held.ok()) return received.call->Refuse(held.status());
+  received.held = *std::move(held);
+  if (size >= kLargeRequestBytes) {
+    HandleElsewhere(method, std::move(received));
   } else {
-    Run(method, context, *call, std::move(bytes), *std::move(held), nullptr);
+    Run(method, std::move(received));
   }
 }
 
-// The context and the service live until the call ends.
-void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, const Context& context,
-                                             const std::shared_ptr<Call>& call,
-                                             grpc::ByteBuffer bytes, ShareLease held) {
-  auto lease = std::make_shared<ShareLease>(std::move(held));
-  std::shared_ptr<TransportQuota::Received> received;
+void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, Received received) {
   if (parts_.transport != nullptr) {
-    received = std::make_shared<TransportQuota::Received>(*parts_.transport, bytes.Length());
+    received.transport =
+        std::make_shared<TransportQuota::Received>(*parts_.transport, received.bytes.Length());
   }
-  large_requests_.Post([this, &method, &context, call, bytes = std::move(bytes), lease,
-                        received = std::move(received)](bool run) mutable {
+  // Shared, because the job is copied.
+  auto waiting = std::make_shared<Received>(std::move(received));
+  large_requests_.Post([this, &method, waiting = std::move(waiting)](bool run) {
+    const std::shared_ptr<Call> call = waiting->call;
     const std::optional<absl::Status> ended = call->ended_meanwhile();
-    if (ended.has_value() || !run) {
-      *lease = ShareLease();  // free before the caller knows
-      call->Refuse(ended.value_or(DrainingRefusal()));
-    } else {
-      // Moved, so that the bytes are freed before the parsed message is validated.
-      Run(method, context, *call, std::move(bytes), std::move(*lease), std::move(received));
-    }
+    if (run && !ended.has_value()) return Run(method, std::move(*waiting));
+    waiting->held = ShareLease();  // free before the caller knows
+    call->Refuse(ended.value_or(DrainingRefusal()));
   });
 }
 
-void MotionSynthesisService::Run(const StreamMethod& method, const Context& context, Call& call,
-                                 grpc::ByteBuffer bytes, ShareLease held,
-                                 std::shared_ptr<TransportQuota::Received> received) {
-  absl::StatusOr<Call::Stream> stream = (this->*method.prepare)(
-      context, call, std::move(bytes), std::move(held), std::move(received));
-  if (!stream.ok()) return call.Refuse(stream.status());
+void MotionSynthesisService::Run(const StreamMethod& method, Received received) {
+  const std::shared_ptr<Call> call = received.call;
+  absl::StatusOr<Call::Stream> stream = (this->*method.prepare)(std::move(received));
+  if (!stream.ok()) return call->Refuse(stream.status());
   stream->write_timeout_seconds = parts_.write_timeout_seconds;
-  call.Run(*std::move(stream));
+  call->Run(*std::move(stream));
 }
 
-absl::StatusOr<Call::Stream> MotionSynthesisService::Prepare(
-    const Context& context, Call& call, grpc::ByteBuffer bytes, ShareLease held,
-    std::shared_ptr<TransportQuota::Received> received) {
+absl::Status MotionSynthesisService::Parse(Received& received,
+                                           google::protobuf::Message& request) const {
+  absl::Status read = pipeline_.Read(std::move(received.bytes), request);
+  received.transport = nullptr;
+  return read;
+}
+
+// By value, so that everything is released if the call is refused.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+absl::StatusOr<Call::Stream> MotionSynthesisService::Prepare(Received received) {
+  Call& call = *received.call;
   v1::SynthesizeRequest request;
   // A large request consists mostly of positions. Without the reservation, the array would grow by
   // doubling and exist twice each time.
-  if (received != nullptr) {
-    const std::size_t positions = bytes.Length() / sizeof(float);
+  if (received.transport != nullptr) {
+    const std::size_t positions = received.bytes.Length() / sizeof(float);
     request.mutable_leader()->mutable_positions()->Reserve(static_cast<int>(positions));
   }
-  const absl::Status read = pipeline_.Read(std::move(bytes), request);
-  received = nullptr;
+  const absl::Status read = Parse(received, request);
   if (!read.ok()) return read;
   // The validator reports an unknown priority together with all other invalid fields.
   const batching::Priority priority =
@@ -265,22 +240,20 @@ absl::StatusOr<Call::Stream> MotionSynthesisService::Prepare(
   const engine::ModelDescription& model = served->model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
-  const absl::Status frames = call.HoldFrames(
-      FramesOf(model, validated->clip.options, validated->clip.leader.frame_count()));
-  if (!frames.ok()) return frames;
   std::optional<bool>& clean_up = validated->clip.options.clean_up;
   if (!clean_up.has_value()) clean_up = CleansUp(model);
-  ClipStreamOptions options;
-  options.deadline = DeadlineOf(context, *parts_.clock, parts_.max_call_seconds);
-  options.buffered_frames = parts_.buffered_frames;
-  options.client = call.client();
-  const std::string engine = parts_.engine == nullptr ? "" : *parts_.engine;
+  ClipParts parts;
+  parts.model = std::move(served->model);
+  parts.scheduler = parts_.scheduler;
+  parts.deadline = DeadlineOf(received.context, *parts_.clock, parts_.max_call_seconds);
+  parts.client = call.client();
+  parts.buffered_frames = parts_.buffered_frames;
+  if (parts_.engine != nullptr) parts.engine = *parts_.engine;
+  parts.server_version = parts_.version;
   Call::Stream stream;
-  stream.held_bytes = std::move(held);
-  stream.deadline = options.deadline;
-  stream.source = std::make_unique<ClipReplies>(std::move(served->model), *std::move(validated),
-                                                std::move(options), *parts_.scheduler,
-                                                ServerBuild{engine, parts_.version});
+  stream.held_bytes = std::move(received.held);
+  stream.deadline = parts.deadline;
+  stream.source = std::make_shared<ClipReplies>(std::move(parts), *std::move(validated));
   return stream;
 }
 
@@ -298,22 +271,19 @@ bool MotionSynthesisService::CleansUp(const engine::ModelDescription& model) con
   return parts_.clean_up.value_or(model.cleaned_up_by_default());
 }
 
-// `held` is released before the session starts: the session keeps the history that it needs, and
-// nothing else.
-absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareLive(
-    const Context& context, Call& call, grpc::ByteBuffer bytes, ShareLease /*held*/,
-    std::shared_ptr<TransportQuota::Received> received) {
+// The bytes are released before the session starts: the session keeps the history that it needs,
+// and nothing else.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareLive(Received received) {
+  Call& call = *received.call;
   v1::SynthesizeLiveRequest request;
-  const absl::Status read = pipeline_.Read(std::move(bytes), request);
-  received = nullptr;
+  const absl::Status read = Parse(received, request);
   if (!read.ok()) return read;
   if (!request.has_start()) {
-    Violations violations;
-    violations.Malformed("payload", "start in the first message",
-                         request.has_frames()         ? "frames"
-                         : request.has_label_change() ? "label_change"
-                                                      : "none");
-    return violations.ToStatus();
+    return Malformed("payload", "start in the first message",
+                     request.has_frames()         ? "frames"
+                     : request.has_label_change() ? "label_change"
+                                                  : "none");
   }
   absl::StatusOr<registry::ServedModel> served = FindModel(request.start().model(), "start.");
   if (!served.ok()) return served.status();
@@ -323,26 +293,21 @@ absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareLive(
   if (!valid.ok()) return valid.status();
   engine::SynthesisOptions& options = valid->live.options;
   if (!options.clean_up.has_value()) options.clean_up = CleansUp(model);
-  const engine::SynthesisOptions chosen = options;
-  v1::LiveHeader header = MakeLiveHeader(model, *valid);
-  LiveSessionParts parts;
-  parts.model = served->model;
+  LiveParts parts;
+  parts.model = std::move(served->model);
   parts.scheduler = parts_.scheduler;
   parts.clock = parts_.clock;
   parts.limits = parts_.limits;
   // A session lasts as long as its caller wants.
-  parts.deadline = DeadlineOf(context, *parts_.clock, std::numeric_limits<double>::infinity());
+  parts.deadline =
+      DeadlineOf(received.context, *parts_.clock, std::numeric_limits<double>::infinity());
   parts.client = call.client();
   parts.idle_seconds = parts_.live_idle_seconds;
   parts.buffered_frames = parts_.buffered_frames;
   Call::Stream stream;
   stream.takes_messages = true;
   stream.deadline = parts.deadline;
-  auto session = std::make_shared<LiveSession>(std::move(parts), *std::move(valid));
-  const absl::Status frames = call.HoldFrames(FramesOf(model, chosen, session->history_frames()));
-  if (!frames.ok()) return frames;
-  stream.source = std::make_unique<LiveReplies>(std::move(session), std::move(header),
-                                                std::move(served->model), chosen, *parts_.clock);
+  stream.source = std::make_shared<LiveReplies>(std::move(parts), *std::move(valid));
   return stream;
 }
 
@@ -368,7 +333,7 @@ void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodI
   };
   Serve(path, [this, method, handle](Context* context) -> Reactor* {
     OpenedCall opened = pipeline_.Open(*context, method);
-    auto* reactor = new CallReactor(*context, open_calls_);
+    auto* reactor = new CallReactor(*context, calls_);
     const absl::Status serving =
         opened.status.ok() ? parts_.admission->CheckServing() : opened.status;
     if (serving.ok()) {

@@ -22,9 +22,7 @@
 #include "server/security/call_guard.h"
 #include "server/service/admission.h"
 #include "server/service/call.h"
-#include "server/service/call_pipeline.h"
-#include "server/service/call_reactor.h"
-#include "server/service/request_limits.h"
+#include "server/service/validator.h"
 
 namespace duet::server::service {
 
@@ -74,7 +72,7 @@ class MotionSynthesisService final : public RawService {
 
   // Waits until every call has its status, at most `seconds`, then breaks off writes that are still
   // in progress. Call after AbortAll.
-  void FinishAborted(double seconds);
+  void FinishAborted(double seconds) { calls_.FinishAborted(seconds); }
 
   // Ends the calls whose time to arrive, to be processed or to be read has passed. Call every few
   // hundredths of a second.
@@ -86,14 +84,19 @@ class MotionSynthesisService final : public RawService {
  private:
   using Context = grpc::CallbackServerContext;
 
+  // The first message of a call. The context lives until the call ends.
+  struct Received {
+    const Context& context;
+    std::shared_ptr<Call> call;
+    grpc::ByteBuffer bytes;
+    ShareLease held;  // accounts for the bytes until the call ends
+    std::shared_ptr<TransportQuota::Received> transport;  // likewise, until they are parsed
+  };
   // A method that streams its replies.
   struct StreamMethod {
     metrics::MethodInfo info;
-    // Parses the first message and finds out how to answer it. `held` accounts for the bytes of the
-    // message; `received` is released with them.
-    absl::StatusOr<Call::Stream> (MotionSynthesisService::*prepare)(
-        const Context& context, Call& call, grpc::ByteBuffer bytes, ShareLease held,
-        std::shared_ptr<TransportQuota::Received> received);
+    // Parses the first message and finds out how to answer it.
+    absl::StatusOr<Call::Stream> (MotionSynthesisService::*prepare)(Received received);
     std::size_t max_request_bytes;  // of the first message, if less than the server's limit
     // The call is refused while the queue has no room for its first window.
     bool needs_room;
@@ -105,19 +108,14 @@ class MotionSynthesisService final : public RawService {
   void CountIfLarge(const grpc::ByteBuffer& bytes);
   // Handles the first message of a call. Large messages are handled on a thread of their own,
   // because they would occupy one of gRPC's few threads.
-  void Handle(const StreamMethod& method, const Context& context, const std::shared_ptr<Call>& call,
-              grpc::ByteBuffer bytes);
-  void HandleElsewhere(const StreamMethod& method, const Context& context,
-                       const std::shared_ptr<Call>& call, grpc::ByteBuffer bytes, ShareLease held);
-  void Run(const StreamMethod& method, const Context& context, Call& call, grpc::ByteBuffer bytes,
-           ShareLease held, std::shared_ptr<TransportQuota::Received> received);
+  void Handle(const StreamMethod& method, Received received);
+  void HandleElsewhere(const StreamMethod& method, Received received);
+  void Run(const StreamMethod& method, Received received);
+  // Parses the message and frees its bytes.
+  absl::Status Parse(Received& received, google::protobuf::Message& request) const;
   // StreamMethod::prepare of Synthesize, and of SynthesizeLive.
-  absl::StatusOr<Call::Stream> Prepare(const Context& context, Call& call, grpc::ByteBuffer bytes,
-                                       ShareLease held,
-                                       std::shared_ptr<TransportQuota::Received> received);
-  absl::StatusOr<Call::Stream> PrepareLive(const Context& context, Call& call,
-                                           grpc::ByteBuffer bytes, ShareLease held,
-                                           std::shared_ptr<TransportQuota::Received> received);
+  absl::StatusOr<Call::Stream> Prepare(Received received);
+  absl::StatusOr<Call::Stream> PrepareLive(Received received);
   // Finds the model that a request selects. `prefix`: precedes the fields in errors, as "start.".
   absl::StatusOr<registry::ServedModel> FindModel(const v1::ModelSelector& selector,
                                                   absl::string_view prefix = "") const;
@@ -132,7 +130,6 @@ class MotionSynthesisService final : public RawService {
 
   const ServiceParts parts_;
   const CallPipeline pipeline_;
-  OpenCalls open_calls_;
   ActiveCalls calls_;
   std::atomic<std::uint64_t> large_request_bytes_{0};
   common::BackgroundThread large_requests_{common::BackgroundThread::Share::kOrdinary};

@@ -3,24 +3,81 @@
 #include <map>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/string_view.h"
 #include "absl/time/time.h"
-#include "server/common/error_details.h"
 
 namespace duet::server::service {
 namespace {
+
+constexpr std::size_t kMaxKept = 24;
+constexpr std::size_t kMaxKeptBytes = 2000;
+constexpr std::size_t kMaxDescriptionBytes = 240;
+// Number of violations in grpc-message, for people who see only the text.
+constexpr std::size_t kInMessage = 2;
 
 // Long enough for a queue to move or a replica to start, short enough for a person.
 constexpr absl::Duration kRetryDelay = absl::Seconds(1);
 
 absl::Status Retryable(absl::Status status, absl::string_view reason,
                        const std::map<std::string, std::string>& metadata = {}) {
-  common::AddErrorInfo(status, reason, metadata);
   common::AddRetryInfo(status, kRetryDelay);
-  return status;
+  return common::WithInfo(std::move(status), reason, metadata);
 }
 
 }  // namespace
+
+void Violations::Malformed(absl::string_view field, absl::string_view expected,
+                           absl::string_view got) {
+  ++malformed_;
+  Keep(field, expected, got);
+}
+
+void Violations::Mismatch(absl::string_view field, absl::string_view expected,
+                          absl::string_view got) {
+  ++mismatched_;
+  Keep(field, expected, got);
+}
+
+void Violations::Keep(absl::string_view field, absl::string_view expected, absl::string_view got) {
+  std::string name = absl::StrCat(prefix_, field);
+  std::string description = absl::StrCat("expected ", expected, ", got ", got);
+  // Descriptions are ASCII (see Quoted), so they can be cut anywhere.
+  if (description.size() > kMaxDescriptionBytes) {
+    description.resize(kMaxDescriptionBytes);
+    description += "...";
+  }
+  const std::size_t bytes = name.size() + description.size();
+  if (kept_.size() >= kMaxKept || kept_bytes_ + bytes > kMaxKeptBytes) return;
+  kept_bytes_ += bytes;
+  kept_.push_back({std::move(name), std::move(description)});
+}
+
+absl::Status Violations::ToStatus() const {
+  if (empty()) return absl::OkStatus();
+  const std::size_t count = malformed_ + mismatched_;
+  std::string message;
+  for (std::size_t i = 0; i < kept_.size() && i < kInMessage; ++i) {
+    absl::StrAppend(&message, i == 0 ? "" : "; ", kept_[i].field,
+                    kept_[i].field.empty() ? "" : ": ", kept_[i].description);
+  }
+  if (count > kInMessage) absl::StrAppend(&message, "; and ", count - kInMessage, " more");
+
+  std::vector<common::FieldViolation> violations = kept_;
+  if (count > kept_.size()) {
+    violations.push_back(
+        {"", absl::StrCat(count - kept_.size(), " further violations are not listed")});
+  }
+  absl::Status status =
+      malformed_ > 0 ? absl::InvalidArgumentError(message) : absl::FailedPreconditionError(message);
+  AddBadRequest(status, violations);
+  return common::WithInfo(std::move(status), malformed_ > 0 ? common::kReasonInvalidRequest
+                                                            : common::kReasonModelMismatch);
+}
+
+absl::Status Malformed(absl::string_view field, absl::string_view expected, absl::string_view got) {
+  Violations violations;
+  violations.Malformed(field, expected, got);
+  return violations.ToStatus();
+}
 
 absl::Status LoadingRefusal() {
   return Retryable(absl::UnavailableError("the server is loading its models"),
@@ -54,32 +111,29 @@ absl::Status TooManySlowRequestsRefusal(std::size_t limit) {
 }
 
 absl::Status ReceiveTimeoutRefusal(double seconds) {
-  absl::Status status = absl::DeadlineExceededError(
-      absl::StrCat("the request did not arrive within receive_timeout_seconds = ", seconds));
-  common::AddErrorInfo(status, common::kReasonReceiveTimeout);
-  return status;
+  return common::WithInfo(
+      absl::DeadlineExceededError(
+          absl::StrCat("the request did not arrive within receive_timeout_seconds = ", seconds)),
+      common::kReasonReceiveTimeout);
 }
 
 absl::Status LiveIdleRefusal(double seconds) {
-  absl::Status status = absl::DeadlineExceededError(
-      absl::StrCat("the live session got no message for live_idle_seconds = ", seconds));
-  common::AddErrorInfo(status, common::kReasonReceiveTimeout);
-  return status;
+  return common::WithInfo(absl::DeadlineExceededError(absl::StrCat(
+                              "the live session got no message for live_idle_seconds = ", seconds)),
+                          common::kReasonReceiveTimeout);
 }
 
 absl::Status WriteTimeoutRefusal(double seconds) {
-  absl::Status status = absl::DeadlineExceededError(
-      absl::StrCat("the caller read no reply for write_timeout_seconds = ", seconds));
-  common::AddErrorInfo(status, common::kReasonWriteTimeout);
-  return status;
+  return common::WithInfo(absl::DeadlineExceededError(absl::StrCat(
+                              "the caller read no reply for write_timeout_seconds = ", seconds)),
+                          common::kReasonWriteTimeout);
 }
 
 absl::Status NoMessageRefusal() {
-  absl::Status status = absl::InvalidArgumentError(
-      "expected a request, got none or one of more than twice max_request_bytes, which the "
-      "transport rejects");
-  common::AddErrorInfo(status, common::kReasonInvalidRequest);
-  return status;
+  return common::WithInfo(
+      absl::InvalidArgumentError("expected a request, got none or one of more than twice "
+                                 "max_request_bytes, which the transport rejects"),
+      common::kReasonInvalidRequest);
 }
 
 absl::Status QueueRefusal(const absl::Status& scheduler_status) {
@@ -88,36 +142,26 @@ absl::Status QueueRefusal(const absl::Status& scheduler_status) {
 }
 
 absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit) {
-  absl::Status status = absl::ResourceExhaustedError(
-      absl::StrCat("request: expected at most max_request_bytes = ", limit, " bytes, got ", bytes));
-  common::AddErrorInfo(
-      status, common::kReasonRequestTooLarge,
+  return common::WithInfo(
+      absl::ResourceExhaustedError(absl::StrCat(
+          "request: expected at most max_request_bytes = ", limit, " bytes, got ", bytes)),
+      common::kReasonRequestTooLarge,
       {{"max_request_bytes", absl::StrCat(limit)}, {"request_bytes", absl::StrCat(bytes)}});
-  return status;
 }
 
 absl::Status LiveMessageTooLargeRefusal(std::size_t bytes, std::size_t limit) {
-  absl::Status status = absl::ResourceExhaustedError(
-      absl::StrCat("message of a live session: expected at most ", limit, " bytes, got ", bytes));
-  common::AddErrorInfo(
-      status, common::kReasonRequestTooLarge,
+  return common::WithInfo(
+      absl::ResourceExhaustedError(absl::StrCat("message of a live session: expected at most ",
+                                                limit, " bytes, got ", bytes)),
+      common::kReasonRequestTooLarge,
       {{"max_message_bytes", absl::StrCat(limit)}, {"message_bytes", absl::StrCat(bytes)}});
-  return status;
 }
 
 absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found) {
   absl::Status status =
       absl::NotFoundError(absl::StrCat(not_found.field, ": ", not_found.description));
   common::AddBadRequest(status, {{not_found.field, not_found.description}});
-  common::AddErrorInfo(status, common::kReasonModelNotFound);
-  return status;
-}
-
-absl::Status ModelFailedRefusal(const std::string& request_id) {
-  absl::Status status = absl::InternalError(absl::StrCat(
-      "the model failed; the server's log has the reason under request_id ", request_id));
-  common::AddErrorInfo(status, common::kReasonModelFailed, {{"request_id", request_id}});
-  return status;
+  return common::WithInfo(std::move(status), common::kReasonModelNotFound);
 }
 
 absl::Status WindowFailure(const absl::Status& error, const std::string& request_id,
@@ -126,7 +170,10 @@ absl::Status WindowFailure(const absl::Status& error, const std::string& request
   // The caller's doing, not the model's.
   if (absl::IsCancelled(error) || absl::IsDeadlineExceeded(error)) return error;
   *cause = error.ToString();
-  return ModelFailedRefusal(request_id);
+  return common::WithInfo(
+      absl::InternalError(absl::StrCat(
+          "the model failed; the server's log has the reason under request_id ", request_id)),
+      common::kReasonModelFailed, {{"request_id", request_id}});
 }
 
 }  // namespace duet::server::service

@@ -41,13 +41,6 @@ motion::Poses FromPositions(const ReplyMapping& reply,
   return poses;
 }
 
-void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
-               v1::MotionChunk& chunk) {
-  chunk.set_first_frame(first_frame);
-  chunk.set_frame_count(poses.frame_count());
-  AppendPositions(reply, poses, chunk.mutable_positions());
-}
-
 namespace {
 
 // The rotation that Levelling::Invert applies.
@@ -79,13 +72,11 @@ void ChooseSigns(google::protobuf::RepeatedField<float>* rotations, int begin) {
 
 }  // namespace
 
-RigFormat::RigFormat(const motion::Coordinates& coordinates,
-                     const std::optional<motion::Levelling>& levelling,
-                     const std::vector<int>& joints)
-    : coordinates_(coordinates),
-      to_caller_(retargeting::Inverse(retargeting::ToWorldAxes(coordinates.up_axis))),
-      tilt_(TiltOf(levelling)),
-      reply_joints_(Inverse(joints)) {}
+RigFormat::RigFormat(const ReplyMapping& reply)
+    : coordinates_(reply.coordinates),
+      to_caller_(retargeting::Inverse(retargeting::ToWorldAxes(reply.coordinates.up_axis))),
+      tilt_(TiltOf(reply.levelling)),
+      reply_joints_(Inverse(reply.joints)) {}
 
 void RigFormat::AppendRig(const retargeting::Rig& rig,
                           google::protobuf::RepeatedPtrField<v1::RigJoint>* joints) const {
@@ -125,19 +116,23 @@ RigSource MakeRigSource(const motion::Skeleton& skeleton, const motion::Poses& l
   return source;
 }
 
+namespace {
+
+// A rig with the proportions of the source's person and the bone lengths of the follower's first
+// frame.
 retargeting::Rig MakeReplyRig(const RigSource& source, const motion::Poses& follower) {
   retargeting::Rig rig = retargeting::MakeRig(source.skeleton, source.person);
   SetBoneLengths(follower[0], &rig);
   return rig;
 }
 
-ReplyRig::ReplyRig(const RigSource& source, const motion::Coordinates& coordinates,
-                   const std::optional<motion::Levelling>& levelling,
-                   const std::vector<int>& joints, const motion::Poses& follower)
-    : format_(coordinates, levelling, joints),
-      rig_(MakeReplyRig(source, follower)),
-      fitter_(source.skeleton, rig_, source.person.frame_rate_hz, source.ankle_height_on_floor,
-              retargeting::BoneLengths::kRigs) {}
+}  // namespace
+
+ReplyRig::ReplyRig(const ReplyMapping& reply, const motion::Poses& follower)
+    : format_(reply),
+      rig_(MakeReplyRig(*reply.rig, follower)),
+      fitter_(reply.rig->skeleton, rig_, reply.rig->person.frame_rate_hz,
+              reply.rig->ankle_height_on_floor, retargeting::BoneLengths::kRigs) {}
 
 void ReplyRig::FillHeader(v1::SynthesisHeader& header) const {
   format_.AppendRig(rig_, header.mutable_rig());
@@ -159,7 +154,7 @@ void ReplyRig::AddRotations(motion::Poses* poses, v1::MotionChunk& chunk) {
 LiveRig::LiveRig(const motion::Skeleton& skeleton, const ReplyMapping& reply,
                  const motion::Poses& leader, const motion::Poses& follower)
     : skeleton_(skeleton),
-      format_(reply.coordinates, reply.levelling, reply.joints),
+      format_(reply),
       bone_lengths_(MedianBoneLengths(skeleton, follower)),
       rig_(MakeReplyRig(MakeRigSource(skeleton, leader, reply.frame_rate_hz), follower)),
       fitter_(skeleton, rig_, reply.frame_rate_hz,

@@ -51,18 +51,11 @@ void AppendPositions(const ReplyMapping& reply, const motion::Poses& poses,
 motion::Poses FromPositions(const ReplyMapping& reply,
                             const google::protobuf::RepeatedField<float>& positions);
 
-// Fills in a chunk. `poses`: in the model's joint order, level world metres.
-void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
-               v1::MotionChunk& chunk);
-
 // Writes a rig and its poses in the caller's joints, unit, up axis and tilt.
 class RigFormat {
  public:
-  // joints: for each joint of the reply, its index in the model; all of the model's, in any order.
-  // Requires a unit that is the same in all directions. `levelling`: from the caller's world to the
-  // follower's.
-  RigFormat(const motion::Coordinates& coordinates,
-            const std::optional<motion::Levelling>& levelling, const std::vector<int>& joints);
+  // Requires a reply with every joint of the model, in a unit that is the same in all directions.
+  explicit RigFormat(const ReplyMapping& reply);
 
   void AppendRig(const retargeting::Rig& rig,
                  google::protobuf::RepeatedPtrField<v1::RigJoint>* joints) const;
@@ -81,20 +74,12 @@ class RigFormat {
 RigSource MakeRigSource(const motion::Skeleton& skeleton, const motion::Poses& leader,
                         double frame_rate_hz);
 
-// A rig with the proportions of the source's person and the bone lengths of the follower's first
-// frame. Requires a follower with at least one frame.
-retargeting::Rig MakeReplyRig(const RigSource& source, const motion::Poses& follower);
-
 // The joint rotations of one reply, frame by frame, in the caller's unit, up axis and tilt. The rig
 // has the leader's proportions and the bone lengths of the follower's first frame.
 class ReplyRig {
  public:
-  // joints: for each joint of the reply, its index in the model; all of the model's, in any order.
-  // Requires a unit that is the same in all directions, and a follower with at least one frame.
-  // `levelling`: from the caller's world to the follower's.
-  ReplyRig(const RigSource& source, const motion::Coordinates& coordinates,
-           const std::optional<motion::Levelling>& levelling, const std::vector<int>& joints,
-           const motion::Poses& follower);
+  // Requires a reply as RigFormat does, with reply.rig, and a follower with at least one frame.
+  ReplyRig(const ReplyMapping& reply, const motion::Poses& follower);
   ReplyRig(const ReplyRig&) = delete;
   ReplyRig& operator=(const ReplyRig&) = delete;
 
@@ -115,7 +100,7 @@ class ReplyRig {
 class LiveRig {
  public:
   // leader, follower: frame 0 of both, [1, joints], in the model's joint order, level metres.
-  // Requires a reply in a unit that is the same in all directions, with every joint.
+  // Requires a reply as RigFormat does.
   LiveRig(const motion::Skeleton& skeleton, const ReplyMapping& reply, const motion::Poses& leader,
           const motion::Poses& follower);
   LiveRig(const LiveRig&) = delete;

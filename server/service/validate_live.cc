@@ -1,5 +1,3 @@
-#include "server/service/validate_live.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -9,7 +7,6 @@
 #include "duet/v1/synthesis.pb.h"
 #include "server/service/request_fields.h"
 #include "server/service/validator.h"
-#include "server/service/violations.h"
 
 namespace duet::server::service {
 namespace {
@@ -51,76 +48,63 @@ RequestLimits HistoryLimits(RequestLimits limits) {
 }
 
 void ValidateCounts(const v1::LiveStart& start, double frame_rate_hz, const RequestLimits& limits,
-                    Violations& violations) {
-  const uint32_t delay = start.delay_frames(), plan = start.plan_frames();
-  if (delay > static_cast<uint32_t>(limits.max_delay_frames)) {
-    violations.Malformed("delay_frames", absl::StrCat("0 to ", limits.max_delay_frames),
-                         absl::StrCat(delay));
-  } else if (delay > kMaxDelaySeconds * frame_rate_hz) {
-    violations.Malformed("delay_frames", absl::StrCat("at most ", kMaxDelaySeconds, " s"),
-                         absl::StrCat(delay, " frames at ", frame_rate_hz, " frames per second"));
+                    RequestFields& fields) {
+  const uint32_t delay = start.delay_frames();
+  if (fields.Whole("delay_frames", delay, 0, limits.max_delay_frames) &&
+      delay > kMaxDelaySeconds * frame_rate_hz) {
+    fields.violations().Malformed(
+        "delay_frames", absl::StrCat("at most ", kMaxDelaySeconds, " s"),
+        absl::StrCat(delay, " frames at ", frame_rate_hz, " frames per second"));
   }
-  if (plan > static_cast<uint32_t>(limits.max_plan_frames)) {
-    violations.Malformed("plan_frames", absl::StrCat("0 to ", limits.max_plan_frames),
-                         absl::StrCat(plan));
-  }
+  fields.Whole("plan_frames", start.plan_frames(), 0, limits.max_plan_frames);
 }
 
-void ReadHistory(const v1::LiveStart& start, const RequestLimits& limits, ValidatedLiveStart* valid,
-                 Violations& violations) {
+PositionFormat FormatOf(const ReplyMapping& reply) {
+  return {static_cast<int>(reply.joints.size()), reply.joints, reply.coordinates};
+}
+
+// Requires a frame number that a session can have.
+void ValidateFrame(absl::string_view field, uint32_t frame, Violations& violations) {
+  if (frame < static_cast<uint32_t>(kMaxLiveFrames)) return;
+  violations.Malformed(field, absl::StrCat("less than ", kMaxLiveFrames), absl::StrCat(frame));
+}
+
+void ReadHistory(const v1::LiveStart& start, ValidatedLiveStart* valid, RequestFields& fields) {
   if (!start.has_history()) return;
   const v1::LiveHistory& history = start.history();
   const int leader_frames = valid->live.leader.frame_count();
   if (valid->live.start.has_value()) {
-    violations.Malformed("follower_start", "no value together with history", "one");
+    fields.violations().Malformed("follower_start", "no value together with history", "one");
   }
-  if (history.first_frame() >= static_cast<uint32_t>(kMaxLiveFrames)) {
-    violations.Malformed("history.first_frame", absl::StrCat("less than ", kMaxLiveFrames),
-                         absl::StrCat(history.first_frame()));
-  }
+  ValidateFrame("history.first_frame", history.first_frame(), fields.violations());
   if (leader_frames == 0) {
-    violations.Malformed("leader.frame_count", "the leader's frames from history.first_frame on",
-                         "0");
+    fields.violations().Malformed("leader.frame_count",
+                                  "the leader's frames from history.first_frame on", "0");
     return;
   }
   const uint32_t frames = history.follower_frame_count();
-  if (frames < 1 || frames > static_cast<uint32_t>(leader_frames)) {
-    violations.Malformed("history.follower_frame_count",
-                         absl::StrCat("1 to ", leader_frames, ", the frames of leader"),
-                         absl::StrCat(frames));
+  if (!fields.Whole("history.follower_frame_count", frames, 1, leader_frames,
+                    ", the frames of leader")) {
     return;
   }
   constexpr char kField[] = "history.follower_positions";
   const auto& positions = history.follower_positions();
-  const auto joints = static_cast<int>(valid->reply.joints.size());
-  if (!ValidateCount(kField, positions.size(), frames, joints, violations) ||
-      !ValidateFinite(kField, positions, violations)) {
-    return;
-  }
-  const motion::Poses follower = ReadPositions(kField, positions, valid->reply.joints,
-                                               valid->reply.coordinates, limits, violations);
-  ValidateSize(kField, follower, violations);
+  const motion::Poses follower =
+      fields.Positions(kField, positions, frames, FormatOf(valid->reply));
+  fields.Size(kField, follower);
   if (follower.empty()) return;
   valid->live.first_frame = static_cast<int>(history.first_frame());
   valid->live.follower = FromPositions(valid->reply, positions);
 }
 
 // Reads a frame of LiveHistory: as FromPositions. Empty if there are violations.
-motion::Poses ReadRigPose(const std::string& field,
+motion::Poses ReadRigPose(absl::string_view field,
                           const google::protobuf::RepeatedField<float>& positions,
-                          const ReplyMapping& reply, const RequestLimits& limits,
-                          Violations& violations) {
-  const auto joints = static_cast<int>(reply.joints.size());
-  motion::Poses none(0, joints);
-  if (!ValidateCount(field, positions.size(), std::nullopt, joints, violations) ||
-      !ValidateFinite(field, positions, violations)) {
-    return none;
-  }
-  const motion::Poses pose =
-      ReadPositions(field, positions, reply.joints, reply.coordinates, limits, violations);
-  if (pose.empty()) return none;
+                          const ReplyMapping& reply, RequestFields& fields) {
+  const motion::Poses pose = fields.Positions(field, positions, std::nullopt, FormatOf(reply));
+  if (pose.empty()) return motion::Poses(0, static_cast<int>(reply.joints.size()));
   // A session may begin with a frame without a person.
-  if (!IsPoint(pose[0])) ValidateSize(field, pose, violations);
+  if (!IsPoint(pose[0])) fields.Size(field, pose);
   return FromPositions(reply, positions);
 }
 
@@ -130,8 +114,7 @@ motion::Poses FirstPose(const motion::Poses& poses) {
   return first;
 }
 
-void ReadRigPoses(const v1::LiveStart& start, const RequestLimits& limits,
-                  ValidatedLiveStart* valid, Violations& violations) {
+void ReadRigPoses(const v1::LiveStart& start, ValidatedLiveStart* valid, RequestFields& fields) {
   if (!start.reply_rotations()) return;
   valid->rotations = true;
   if (valid->live.first_frame == 0) {
@@ -141,10 +124,9 @@ void ReadRigPoses(const v1::LiveStart& start, const RequestLimits& limits,
   }
   const v1::LiveHistory& history = start.history();
   valid->rig_leader = ReadRigPose("history.rig_leader_positions", history.rig_leader_positions(),
-                                  valid->reply, limits, violations);
-  valid->rig_follower =
-      ReadRigPose("history.rig_follower_positions", history.rig_follower_positions(), valid->reply,
-                  limits, violations);
+                                  valid->reply, fields);
+  valid->rig_follower = ReadRigPose("history.rig_follower_positions",
+                                    history.rig_follower_positions(), valid->reply, fields);
 }
 
 }  // namespace
@@ -159,8 +141,8 @@ absl::StatusOr<ValidatedLiveStart> ValidateLiveStart(v1::LiveStart start,
     return violations.ToStatus();
   }
   const v1::SynthesizeRequest request = ToRequest(&start, model);
-  absl::StatusOr<ValidatedRequest> common = ValidateRequest(
-      request, model, HistoryLimits(limits), {kPrefix, static_cast<uint32_t>(kMaxLiveFrames)});
+  absl::StatusOr<ValidatedRequest> common =
+      ValidateRequest(request, model, HistoryLimits(limits), kPrefix, kMaxLiveFrames);
   if (!common.ok()) return common.status();
   ValidatedLiveStart valid{{common->clip.frame_rate_hz,
                             static_cast<int>(start.delay_frames()),
@@ -174,37 +156,27 @@ absl::StatusOr<ValidatedLiveStart> ValidateLiveStart(v1::LiveStart start,
                            std::move(common->reply),
                            static_cast<int>(start.plan_frames())};
   valid.reply.rig.reset();  // LiveRig makes its own
-  Violations violations(kPrefix);
-  ValidateCounts(start, valid.live.frame_rate_hz, limits, violations);
-  ReadHistory(start, limits, &valid, violations);
-  ReadRigPoses(start, limits, &valid, violations);
-  if (!violations.empty()) return violations.ToStatus();
+  RequestFields fields(model, limits, kPrefix);
+  ValidateCounts(start, valid.live.frame_rate_hz, limits, fields);
+  ReadHistory(start, &valid, fields);
+  ReadRigPoses(start, &valid, fields);
+  if (!fields.violations().empty()) return fields.violations().ToStatus();
   return valid;
 }
 
 absl::StatusOr<motion::Poses> ReadLeaderFrames(const v1::LeaderFrames& frames,
                                                const ReplyMapping& format,
-                                               const RequestLimits& limits) {
-  Violations violations("frames.");
-  const auto most =
-      static_cast<uint32_t>(std::max(1.0, limits.max_live_seconds * format.frame_rate_hz));
-  if (frames.frame_count() < 1 || frames.frame_count() > most) {
-    violations.Malformed("frame_count", absl::StrCat("1 to ", most),
-                         absl::StrCat(frames.frame_count()));
-  }
-  if (frames.first_frame() >= static_cast<uint32_t>(kMaxLiveFrames)) {
-    violations.Malformed("first_frame", absl::StrCat("less than ", kMaxLiveFrames),
-                         absl::StrCat(frames.first_frame()));
-  }
-  ValidateCount("positions", frames.positions_size(), frames.frame_count(),
-                static_cast<int>(format.joints.size()), violations);
-  if (!violations.empty() || !ValidateFinite("positions", frames.positions(), violations)) {
-    return violations.ToStatus();
-  }
-  motion::Poses poses = ReadPositions("positions", frames.positions(), format.joints,
-                                      format.coordinates, limits, violations);
-  if (!violations.empty()) return violations.ToStatus();
+                                               const engine::ModelDescription& model,
+                                               const RequestLimits& limits, bool check_size) {
+  RequestFields fields(model, limits, "frames.");
+  const int most = static_cast<int>(std::max(1.0, limits.max_live_seconds * format.frame_rate_hz));
+  fields.Whole("frame_count", frames.frame_count(), 1, most);
+  ValidateFrame("first_frame", frames.first_frame(), fields.violations());
+  motion::Poses poses =
+      fields.Positions("positions", frames.positions(), frames.frame_count(), FormatOf(format));
   if (format.levelling) poses = format.levelling->Apply(std::move(poses));
+  if (check_size) fields.Size("positions", poses);
+  if (!fields.violations().empty()) return fields.violations().ToStatus();
   return poses;
 }
 
@@ -212,13 +184,13 @@ absl::StatusOr<ValidatedLabelChange> ReadLabelChange(const v1::LabelChange& chan
                                                      double frame_rate_hz,
                                                      const engine::ModelDescription& model,
                                                      const RequestLimits& limits) {
-  Violations violations("label_change.");
+  RequestFields fields(model, limits, "label_change.");
   ValidatedLabelChange valid;
   valid.frame = next_frame;
   if (change.has_frame()) {
     if (change.frame() < static_cast<uint32_t>(next_frame) ||
         change.frame() >= static_cast<uint32_t>(kMaxLiveFrames)) {
-      violations.Malformed(
+      fields.violations().Malformed(
           "frame",
           absl::StrCat("at least ", next_frame,
                        ", the first frame that is not final, and less than ", kMaxLiveFrames),
@@ -228,12 +200,12 @@ absl::StatusOr<ValidatedLabelChange> ReadLabelChange(const v1::LabelChange& chan
   }
   const double most = limits.max_live_seconds * frame_rate_hz;
   if (change.ease_frames() > most) {
-    violations.Malformed("ease_frames", absl::StrCat("at most ", most, ", 10 seconds"),
-                         absl::StrCat(change.ease_frames()));
+    fields.violations().Malformed("ease_frames", absl::StrCat("at most ", most, ", 10 seconds"),
+                                  absl::StrCat(change.ease_frames()));
   }
   valid.ease_frames = static_cast<int>(std::min<double>(change.ease_frames(), most));
-  valid.weights = ReadLabelVector("label_vector", change.label_vector(), model, limits, violations);
-  if (!violations.empty()) return violations.ToStatus();
+  valid.weights = fields.LabelVector("label_vector", change.label_vector());
+  if (!fields.violations().empty()) return fields.violations().ToStatus();
   return valid;
 }
 

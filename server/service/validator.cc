@@ -2,20 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "model/base/text.h"
+#include "model/engine/candidates.h"
 #include "model/engine/window_seed.h"
 #include "server/service/request_fields.h"
-#include "server/service/violations.h"
 
 namespace duet::server::service {
 namespace {
+
+using absl::StrCat;
+using motion::Vec3;
+
+static_assert(RequestLimits().max_candidates == engine::kMostCandidates);
 
 // The cosine of the largest angle between the true vertical and the up axis: 45 degrees.
 constexpr float kMinUprightCosine = 0.70710678f;
@@ -24,92 +26,126 @@ constexpr float kMinUprightCosine = 0.70710678f;
 class Validation {
  public:
   Validation(const v1::SynthesizeRequest& request, const engine::ModelDescription& model,
-             const RequestLimits& limits, const RequestForm& form)
+             const RequestLimits& limits, std::string prefix, uint32_t label_frames)
       : request_(request),
         model_(model),
         limits_(limits),
-        label_frames_(form.label_frames),
-        violations_(form.prefix) {}
+        label_frames_(label_frames),
+        fields_(model, limits, std::move(prefix)) {}
 
   absl::StatusOr<ValidatedRequest> Run();
 
  private:
   void Leader();
   void Up();
+  std::vector<engine::LabelKeyframe> Labels();
+  std::vector<engine::LabelKeyframe> LabelKeyframes();
   std::optional<engine::FollowerStart> Start();
-  std::optional<motion::Vec3> PartnerDirection();
+  std::optional<Vec3> PartnerDirection();
   // Returns a direction in metres, y up, as captured: its length is 0 if the caller's is. Absent,
   // with violations, if it is not finite; absent if the coordinates are unknown.
-  std::optional<motion::Vec3> WorldDirection(absl::string_view field,
-                                             const v1::Direction& direction);
-  std::vector<motion::Vec3> StartPositions(absl::string_view field,
-                                           const google::protobuf::RepeatedField<float>& values,
-                                           const std::vector<int>& joints);
+  std::optional<Vec3> WorldDirection(absl::string_view field, const v1::Direction& direction);
+  std::vector<Vec3> StartPositions(absl::string_view field,
+                                   const google::protobuf::RepeatedField<float>& values,
+                                   const PositionFormat& format);
+  engine::SynthesisOptions Options();
+  std::optional<bool> CleanUp();
+  // The constraints as pins in the caller's frames, the model's joints and level world metres, in
+  // the same order.
+  motion::Pins Constraints();
+  Vec3 ConstraintPosition(const std::string& field, const v1::JointConstraint& constraint);
+  // Takes time in proportion to `index`; the number of constraints is limited.
+  void ConstraintRepetition(int index);
   void FillReplyMapping();
+  void ReplyJoints();
   void Rotations();
   int ChunkFrames();
   batching::Priority CallPriority();
+
+  void Malformed(absl::string_view field, absl::string_view expected, absl::string_view got) {
+    fields_.violations().Malformed(field, expected, got);
+  }
 
   const v1::SynthesizeRequest& request_;
   const engine::ModelDescription& model_;
   const RequestLimits& limits_;
   const uint32_t label_frames_;
-  Violations violations_;
+  RequestFields fields_;
 
-  std::optional<motion::Coordinates> coordinates_;
-  std::vector<int> joints_;  // the leader's joints in the model; empty if they do not match
+  PositionFormat format_;  // of the leader
   motion::Poses leader_;
   std::optional<motion::Levelling> levelling_;  // absent if the caller's world is level
   ReplyMapping reply_;
 };
 
-std::string Text(const v1::Direction& direction) {
-  return absl::StrCat("(", direction.x(), ", ", direction.y(), ", ", direction.z(), ")");
-}
-
 void Validation::Leader() {
-  if (!request_.has_leader()) {
-    violations_.Malformed("leader", "a motion", "none");
-    return;
-  }
+  if (!request_.has_leader()) return Malformed("leader", "a motion", "none");
   const v1::Motion& leader = request_.leader();
-  joints_ = ValidateJoints(leader, model_, violations_);
-  ValidateTiming(leader, limits_, violations_);
-  coordinates_ = ValidateCoordinates(leader, violations_);
-
-  const bool finite = ValidateFinite("leader.positions", leader.positions(), violations_);
-  if (!ValidateCount("leader.positions", leader.positions_size(), leader.frame_count(),
-                     leader.joint_names_size(), violations_)) {
-    return;
-  }
-  if (!finite || !coordinates_.has_value() || joints_.empty()) return;
-  leader_ = ReadPositions("leader.positions", leader.positions(), joints_, *coordinates_, limits_,
-                          violations_);
-  ValidateSize("leader.positions", leader_, violations_);
+  format_.joint_count = leader.joint_names_size();
+  format_.joints = fields_.Joints(leader);
+  fields_.Timing(leader);
+  format_.coordinates = fields_.Coordinates(leader);
+  leader_ =
+      fields_.Positions("leader.positions", leader.positions(), leader.frame_count(), format_);
+  fields_.Size("leader.positions", leader_);
 }
 
 void Validation::Up() {
   if (!request_.has_up()) return;
-  const std::optional<motion::Vec3> up = WorldDirection("up", request_.up());
+  const std::optional<Vec3> up = WorldDirection("up", request_.up());
   if (!up.has_value()) return;
   // Negated, so that a direction of length 0 is rejected too.
   if (!(up->y > kMinUprightCosine * Norm(*up))) {
-    violations_.Malformed(
-        "up",
-        absl::StrCat("a direction of any length but 0, less than 45 degrees from ",
-                     v1::UpAxis_Name(request_.leader().up_axis())),
-        Text(request_.up()));
-    return;
+    return Malformed("up",
+                     StrCat("a direction of any length but 0, less than 45 degrees from ",
+                            v1::UpAxis_Name(request_.leader().up_axis())),
+                     XyzText(request_.up()));
   }
   levelling_ = motion::Levelling(*up, 0);
   leader_ = levelling_->Apply(std::move(leader_));
 }
 
-std::vector<motion::Vec3> Validation::StartPositions(
-    absl::string_view field, const google::protobuf::RepeatedField<float>& values,
-    const std::vector<int>& joints) {
-  if (!ValidateFinite(field, values, violations_) || !coordinates_.has_value()) return {};
-  motion::Poses pose = ReadPositions(field, values, joints, *coordinates_, limits_, violations_);
+std::vector<engine::LabelKeyframe> Validation::Labels() {
+  const bool has_keyframes = !request_.label_keyframes().empty();
+  if (request_.has_label_vector() == has_keyframes) {
+    Malformed(has_keyframes ? "label_keyframes" : "label_vector", "label_vector or label_keyframes",
+              has_keyframes ? "both" : "neither");
+  }
+  std::vector<engine::LabelKeyframe> keyframes = LabelKeyframes();
+  if (request_.has_label_vector()) {
+    keyframes.push_back({0, fields_.LabelVector("label_vector", request_.label_vector())});
+  }
+  return keyframes;
+}
+
+std::vector<engine::LabelKeyframe> Validation::LabelKeyframes() {
+  std::vector<engine::LabelKeyframe> keyframes;
+  const int count = request_.label_keyframes_size();
+  if (!fields_.AtMost("label_keyframes", limits_.max_label_keyframes, count)) return keyframes;
+  for (int i = 0; i < count; ++i) {
+    const v1::LabelKeyframe& keyframe = request_.label_keyframes(i);
+    const std::string at = StrCat("label_keyframes[", i, "]");
+    const std::string frame = StrCat(keyframe.frame());
+    if (keyframe.frame() >= label_frames_) {
+      Malformed(at + ".frame", StrCat("less than ", label_frames_, ", the number of frames"),
+                frame);
+    }
+    if (i > 0 && keyframe.frame() <= request_.label_keyframes(i - 1).frame()) {
+      Malformed(
+          at + ".frame",
+          StrCat("more than the previous keyframe's ", request_.label_keyframes(i - 1).frame()),
+          frame);
+    }
+    keyframes.push_back({static_cast<int>(std::min(keyframe.frame(), label_frames_)),
+                         fields_.LabelVector(at + ".label_vector", keyframe.label_vector())});
+  }
+  return keyframes;
+}
+
+std::vector<Vec3> Validation::StartPositions(absl::string_view field,
+                                             const google::protobuf::RepeatedField<float>& values,
+                                             const PositionFormat& format) {
+  motion::Poses pose = fields_.Positions(field, values, std::nullopt, format);
   if (levelling_.has_value()) pose = levelling_->Apply(std::move(pose));
   return {pose.all().begin(), pose.all().end()};
 }
@@ -117,65 +153,153 @@ std::vector<motion::Vec3> Validation::StartPositions(
 std::optional<engine::FollowerStart> Validation::Start() {
   if (!request_.has_follower_start()) return std::nullopt;
   if (!model_.accepts_follower_start) {
-    violations_.Mismatch("follower_start",
-                         absl::StrCat("no value for model ", model_.name, " version ",
-                                      model_.version, ", which does not accept it"),
-                         "one");
+    fields_.violations().Mismatch("follower_start",
+                                  StrCat("no value for model ", model_.name, " version ",
+                                         model_.version, ", which does not accept it"),
+                                  "one");
   }
   const v1::FollowerStart& start = request_.follower_start();
   if (start.has_root_position()) {
-    google::protobuf::RepeatedField<float> xyz;
-    for (const float value :
-         {start.root_position().x(), start.root_position().y(), start.root_position().z()}) {
-      xyz.Add(value);
-    }
-    const std::vector<motion::Vec3> root = StartPositions("follower_start.root_position", xyz, {0});
+    const std::vector<Vec3> root =
+        StartPositions("follower_start.root_position", Components(start.root_position()),
+                       {1, {0}, format_.coordinates});
     if (root.empty()) return std::nullopt;
     return engine::FollowerStart{root.front(), {}};
   }
   if (!start.has_pose()) {
-    violations_.Malformed("follower_start.start", "root_position or pose", "neither");
+    Malformed("follower_start.start", "root_position or pose", "neither");
     return std::nullopt;
   }
-  const auto& values = start.pose().positions();
-  if (!ValidateCount("follower_start.pose.positions", values.size(), std::nullopt,
-                     request_.leader().joint_names_size(), violations_) ||
-      joints_.empty()) {
-    return std::nullopt;
-  }
-  std::vector<motion::Vec3> pose = StartPositions("follower_start.pose.positions", values, joints_);
+  constexpr char kField[] = "follower_start.pose.positions";
+  std::vector<Vec3> pose = StartPositions(kField, start.pose().positions(), format_);
   if (pose.empty()) return std::nullopt;
-  ValidateSize("follower_start.pose.positions", motion::Poses(static_cast<int>(pose.size()), pose),
-               violations_);
-  const motion::Vec3 root = pose[static_cast<std::size_t>(model_.skeleton.root)];
+  fields_.Size(kField, motion::Poses(static_cast<int>(pose.size()), pose));
+  const Vec3 root = pose[static_cast<std::size_t>(model_.skeleton.root)];
   return engine::FollowerStart{root, std::move(pose)};
 }
 
-std::optional<motion::Vec3> Validation::WorldDirection(absl::string_view field,
-                                                       const v1::Direction& direction) {
-  google::protobuf::RepeatedField<float> xyz;
-  for (const float value : {direction.x(), direction.y(), direction.z()}) xyz.Add(value);
-  if (!ValidateFinite(field, xyz, violations_) || !coordinates_.has_value()) return std::nullopt;
+std::optional<Vec3> Validation::WorldDirection(absl::string_view field,
+                                               const v1::Direction& direction) {
+  const google::protobuf::RepeatedField<float> xyz = Components(direction);
+  if (!fields_.Finite(field, xyz) || !format_.coordinates.has_value()) return std::nullopt;
   // Scaled first, so that the conversion loses neither tiny nor huge components.
   const float largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
-  if (!(largest > 0)) return motion::Vec3{};
-  const motion::Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
-  return ToWorld(*coordinates_, unit) - ToWorld(*coordinates_, {});
+  if (!(largest > 0)) return Vec3{};
+  const Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
+  return ToWorld(*format_.coordinates, unit) - ToWorld(*format_.coordinates, {});
 }
 
-std::optional<motion::Vec3> Validation::PartnerDirection() {
+std::optional<Vec3> Validation::PartnerDirection() {
   if (!request_.has_partner_direction()) return std::nullopt;
   const v1::Direction& direction = request_.partner_direction();
-  const std::optional<motion::Vec3> captured = WorldDirection("partner_direction", direction);
+  const std::optional<Vec3> captured = WorldDirection("partner_direction", direction);
   if (!captured.has_value()) return std::nullopt;
-  const motion::Vec3 world = levelling_.has_value() ? levelling_->Apply(*captured) : *captured;
+  const Vec3 world = levelling_.has_value() ? levelling_->Apply(*captured) : *captured;
   const float horizontal = std::hypot(world.x, world.z);
   if (horizontal > 1e-6F * Norm(world)) {
-    return motion::Vec3{world.x / horizontal, 0, world.z / horizontal};
+    return Vec3{world.x / horizontal, 0, world.z / horizontal};
   }
-  violations_.Malformed("partner_direction", "a direction that is neither vertical nor of length 0",
-                        Text(direction));
+  Malformed("partner_direction", "a direction that is neither vertical nor of length 0",
+            XyzText(direction));
   return std::nullopt;
+}
+
+engine::SynthesisOptions Validation::Options() {
+  engine::SynthesisOptions options;
+  engine::Sampling& sampling = options.sampling;
+  if (request_.has_seed()) sampling.seed = request_.seed();
+  if (request_.has_variety()) sampling.variety = request_.variety();
+  fields_.Number("variety", sampling.variety, 0, limits_.max_variety);
+  if (request_.has_reaction()) sampling.reaction = request_.reaction();
+  fields_.Number("reaction", sampling.reaction, 0, engine::kMostReaction);
+  sampling.candidates = engine::kDefaultCandidates;
+  if (request_.has_candidates() &&
+      fields_.Whole("candidates", request_.candidates(), 1, limits_.max_candidates)) {
+    sampling.candidates = static_cast<int>(request_.candidates());
+  }
+  options.clean_up = CleanUp();
+  return options;
+}
+
+std::optional<bool> Validation::CleanUp() {
+  switch (request_.clean_up()) {
+    case v1::CLEAN_UP_ON:
+      return true;
+    case v1::CLEAN_UP_OFF:
+      return false;
+    case v1::CLEAN_UP_UNSPECIFIED:
+      break;
+    default:
+      Malformed("clean_up", "CLEAN_UP_ON, CLEAN_UP_OFF or no value", StrCat(request_.clean_up()));
+  }
+  return std::nullopt;
+}
+
+motion::Pins Validation::Constraints() {
+  motion::Pins pins;
+  const int count = request_.constraints_size();
+  if (!fields_.AtMost("constraints", limits_.max_constraints, count)) return pins;
+  for (int i = 0; i < count; ++i) {
+    const v1::JointConstraint& constraint = request_.constraints(i);
+    const std::string at = StrCat("constraints[", i, "].");
+    ConstraintRepetition(i);
+    if (constraint.frame() >= request_.leader().frame_count()) {
+      Malformed(at + "frame",
+                StrCat("less than the ", request_.leader().frame_count(), " frames of leader"),
+                StrCat(constraint.frame()));
+    }
+    fields_.Number(at + "softness", constraint.softness(), 0, 1);
+    const int joint = model_.skeleton.Find(constraint.joint_name());
+    if (joint < 0) {
+      fields_.violations().Mismatch(at + "joint_name",
+                                    StrCat("a joint of model ", model_.name, " (",
+                                           absl::StrJoin(model_.skeleton.joint_names, ", "), ")"),
+                                    base::Quoted(constraint.joint_name()));
+    }
+    pins.push_back({joint, static_cast<double>(constraint.frame()),
+                    ConstraintPosition(at + "position", constraint), constraint.softness()});
+  }
+  return pins;
+}
+
+Vec3 Validation::ConstraintPosition(const std::string& field,
+                                    const v1::JointConstraint& constraint) {
+  if (!constraint.has_position()) {
+    Malformed(field, "a point", "none");
+    return {};
+  }
+  const v1::Point& point = constraint.position();
+  const Vec3 given = {point.x(), point.y(), point.z()};
+  if (!IsFinite(given)) {
+    Malformed(field, "finite numbers", XyzText(point));
+    return {};
+  }
+  if (!format_.coordinates) return {};
+  const Vec3 captured = ToWorld(*format_.coordinates, given);
+  const Vec3 position = levelling_ ? levelling_->Apply(captured) : captured;
+  if (constraint.frame() >= static_cast<uint32_t>(leader_.frame_count())) return position;
+  const Vec3 root = leader_.at(static_cast<int>(constraint.frame()), model_.skeleton.root);
+  // Negated, so that a conversion that overflowed is rejected too.
+  if (!(Distance(position, root) <= limits_.max_constraint_metres)) {
+    Malformed(field,
+              StrCat("at most ", limits_.max_constraint_metres,
+                     " m from the leader in this frame, in leader.unit"),
+              StrCat(XyzText(point), "; check the unit"));
+  }
+  return position;
+}
+
+void Validation::ConstraintRepetition(int index) {
+  const v1::JointConstraint& constraint = request_.constraints(index);
+  for (int i = 0; i < index; ++i) {
+    const v1::JointConstraint& earlier = request_.constraints(i);
+    if (earlier.frame() != constraint.frame() || earlier.joint_name() != constraint.joint_name()) {
+      continue;
+    }
+    return Malformed(StrCat("constraints[", index, "]"), "each joint at most once in a frame",
+                     StrCat(base::Quoted(constraint.joint_name()), " in frame ", constraint.frame(),
+                            " again after constraints[", i, "]"));
+  }
 }
 
 void Validation::FillReplyMapping() {
@@ -183,33 +307,33 @@ void Validation::FillReplyMapping() {
   reply_.unit = leader.unit();
   reply_.up_axis = leader.up_axis();
   reply_.frame_rate_hz = leader.frame_rate_hz();
-  if (coordinates_.has_value()) reply_.coordinates = *coordinates_;
+  if (format_.coordinates.has_value()) reply_.coordinates = *format_.coordinates;
   reply_.levelling = levelling_;
+  // ReplyJoints takes quadratic time, so a list that is too long is skipped.
+  if (leader.joint_names_size() <= kMaxJointNames) ReplyJoints();
+}
+
+void Validation::ReplyJoints() {
   const auto& wanted = request_.reply_joint_names();
-  // The comparison below takes quadratic time, so a list that is too long is skipped.
-  if (leader.joint_names_size() > kMaxJointNames) return;
-  if (wanted.size() > leader.joint_names_size()) {
-    violations_.Malformed(
-        "reply_joint_names",
-        absl::StrCat("at most the ", leader.joint_names_size(), " names of leader.joint_names"),
-        absl::StrCat(wanted.size()));
-    return;
+  const auto& known = request_.leader().joint_names();
+  if (wanted.size() > known.size()) {
+    return Malformed("reply_joint_names",
+                     StrCat("at most the ", known.size(), " names of leader.joint_names"),
+                     StrCat(wanted.size()));
   }
-  for (const std::string& name : wanted.empty() ? leader.joint_names() : wanted) {
+  for (const std::string& name : wanted.empty() ? known : wanted) {
     reply_.joint_names.push_back(name);
     reply_.joints.push_back(model_.skeleton.Find(name));
   }
-  const auto& known = leader.joint_names();
   for (int i = 0; i < wanted.size(); ++i) {
-    const std::string field = absl::StrCat("reply_joint_names[", i, "]");
+    const std::string field = StrCat("reply_joint_names[", i, "]");
     if (std::find(known.begin(), known.end(), wanted[i]) == known.end()) {
-      violations_.Malformed(field, "one of leader.joint_names", base::Quoted(wanted[i]));
+      Malformed(field, "one of leader.joint_names", base::Quoted(wanted[i]));
     }
-    const auto first = std::find(wanted.begin(), wanted.end(), wanted[i]);
-    if (first - wanted.begin() < i) {
-      violations_.Malformed(field, "each joint at most once",
-                            absl::StrCat(base::Quoted(wanted[i]), " again after reply_joint_names[",
-                                         first - wanted.begin(), "]"));
+    const auto first = std::find(wanted.begin(), wanted.end(), wanted[i]) - wanted.begin();
+    if (first < i) {
+      Malformed(field, "each joint at most once",
+                StrCat(base::Quoted(wanted[i]), " again after reply_joint_names[", first, "]"));
     }
   }
 }
@@ -217,15 +341,15 @@ void Validation::FillReplyMapping() {
 void Validation::Rotations() {
   if (!request_.reply_rotations()) return;
   if (request_.leader().unit() == v1::LENGTH_UNIT_SBU_NORMALISED) {
-    violations_.Malformed(
+    Malformed(
         "reply_rotations",
         "LENGTH_UNIT_METRES or LENGTH_UNIT_MILLIMETRES in leader.unit: a unit that differs between "
         "axes has no rotations",
         "LENGTH_UNIT_SBU_NORMALISED");
   }
   if (request_.reply_joint_names_size() > 0) {
-    violations_.Malformed("reply_rotations", "no reply_joint_names: a rig needs every joint",
-                          absl::StrCat(request_.reply_joint_names_size(), " names"));
+    Malformed("reply_rotations", "no reply_joint_names: a rig needs every joint",
+              StrCat(request_.reply_joint_names_size(), " names"));
   }
   // Without frames, the leader has violations of its own.
   if (leader_.frame_count() == 0) return;
@@ -234,38 +358,32 @@ void Validation::Rotations() {
 
 int Validation::ChunkFrames() {
   if (!request_.has_chunk_frames()) return limits_.default_chunk_frames;
-  const uint32_t frames = request_.chunk_frames();
-  if (frames < 1 || frames > static_cast<uint32_t>(limits_.max_chunk_frames)) {
-    violations_.Malformed("chunk_frames", absl::StrCat("1 to ", limits_.max_chunk_frames),
-                          absl::StrCat(frames));
-  }
-  return static_cast<int>(frames);
+  fields_.Whole("chunk_frames", request_.chunk_frames(), 1, limits_.max_chunk_frames);
+  return static_cast<int>(request_.chunk_frames());
 }
 
 batching::Priority Validation::CallPriority() {
   const std::optional<batching::Priority> priority = PriorityOf(request_);
   if (priority.has_value()) return *priority;
   const std::string& name = v1::Priority_Name(request_.priority());
-  violations_.Malformed("priority", "PRIORITY_INTERACTIVE, PRIORITY_BULK or no value",
-                        name.empty() ? absl::StrCat(request_.priority()) : name);
+  Malformed("priority", "PRIORITY_INTERACTIVE, PRIORITY_BULK or no value",
+            name.empty() ? StrCat(request_.priority()) : name);
   return batching::Priority::kInteractive;
 }
 
 absl::StatusOr<ValidatedRequest> Validation::Run() {
   Leader();
   Up();
-  std::vector<engine::LabelKeyframe> labels =
-      ValidateLabels(request_, label_frames_, model_, limits_, violations_);
+  std::vector<engine::LabelKeyframe> labels = Labels();
   std::optional<engine::FollowerStart> start = Start();
-  const std::optional<motion::Vec3> partner_direction = PartnerDirection();
-  engine::SynthesisOptions options = ValidateOptions(request_, limits_, violations_);
-  motion::Pins pins = ValidateConstraints(request_, {coordinates_, levelling_, leader_}, model_,
-                                          limits_, violations_);
+  const std::optional<Vec3> partner_direction = PartnerDirection();
+  engine::SynthesisOptions options = Options();
+  motion::Pins pins = Constraints();
   FillReplyMapping();
   Rotations();
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
-  if (!violations_.empty()) return violations_.ToStatus();
+  if (!fields_.violations().empty()) return fields_.violations().ToStatus();
   if (!request_.has_seed()) {
     options.sampling.seed =
         engine::LeaderSeed(leader_, request_.leader().frame_rate_hz(), model_.default_seeds);
@@ -295,14 +413,14 @@ std::optional<batching::Priority> PriorityOf(const v1::SynthesizeRequest& reques
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
                                                  const engine::ModelDescription& model,
                                                  const RequestLimits& limits) {
-  return ValidateRequest(request, model, limits, {"", request.leader().frame_count()});
+  return ValidateRequest(request, model, limits, "", request.leader().frame_count());
 }
 
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
                                                  const engine::ModelDescription& model,
-                                                 const RequestLimits& limits,
-                                                 const RequestForm& form) {
-  return Validation(request, model, limits, form).Run();
+                                                 const RequestLimits& limits, std::string prefix,
+                                                 uint32_t label_frames) {
+  return Validation(request, model, limits, std::move(prefix), label_frames).Run();
 }
 
 }  // namespace duet::server::service

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/service/violations.h"
+#include "server/service/refusals.h"
 
 namespace duet::server::service {
 namespace {
@@ -32,6 +32,7 @@ constexpr std::size_t kMaxOfSingle = 1024;
 constexpr std::size_t kMaxOfRepeated = 65536;
 constexpr std::size_t kMaxOfNested = 262144;
 constexpr std::size_t kMaxUnknown = 1024;
+constexpr std::size_t kMaxLiveMessageBytes = std::size_t{1} << 20;
 
 // A field and its path in the message: "label_keyframes.label_vector".
 struct Place {
@@ -145,13 +146,10 @@ bool Surveyor::Unknown(uint32_t tag) {
 
 bool Surveyor::Count(const std::string& path, std::size_t& count, std::size_t limit) {
   if (++count <= limit) return true;
-  Violations violations;
-  if (path.empty()) {
-    violations.Malformed("", absl::StrCat("at most ", limit, " unknown fields"), "more");
-  } else {
-    violations.Malformed(path, absl::StrCat("at most ", limit, " values in a request"), "more");
-  }
-  too_many_ = violations.ToStatus();
+  too_many_ =
+      path.empty()
+          ? Malformed("", absl::StrCat("at most ", limit, " unknown fields"), "more")
+          : Malformed(path, absl::StrCat("at most ", limit, " values in a request"), "more");
   return false;
 }
 
@@ -185,11 +183,19 @@ absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& mes
       return absl::OkStatus();
     }
   }
-  Violations violations;
-  violations.Malformed(message.GetDescriptor()->full_name(),
-                       "a message in wire format with strings in UTF-8",
-                       absl::StrCat(bytes.Length(), " bytes that do not parse"));
-  return violations.ToStatus();
+  return Malformed(message.GetDescriptor()->full_name(),
+                   "a message in wire format with strings in UTF-8",
+                   absl::StrCat(bytes.Length(), " bytes that do not parse"));
+}
+
+absl::StatusOr<v1::SynthesizeLiveRequest> ParseLiveMessage(grpc::ByteBuffer bytes) {
+  if (bytes.Length() > kMaxLiveMessageBytes) {
+    return LiveMessageTooLargeRefusal(bytes.Length(), kMaxLiveMessageBytes);
+  }
+  v1::SynthesizeLiveRequest message;
+  absl::Status parsed = ParseMessage(std::move(bytes), message);
+  if (!parsed.ok()) return parsed;
+  return message;
 }
 
 grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message) {

@@ -7,6 +7,8 @@
 #include <grpcpp/support/byte_buffer.h>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "duet/v1/live.pb.h"
 
 namespace duet::server::service {
 
@@ -35,6 +37,10 @@ absl::Status SurveyMessage(google::protobuf::io::ZeroCopyInputStream& bytes,
 // INVALID_ARGUMENT with the expected message type if the bytes are malformed, or with the field
 // that occurs too often. Frees `bytes` in any case.
 absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& message);
+
+// Parses a message of a live session after the first one. Returns also RESOURCE_EXHAUSTED if it is
+// larger than a mebibyte, far above ten seconds of any skeleton at any rate. Frees `bytes`.
+absl::StatusOr<v1::SynthesizeLiveRequest> ParseLiveMessage(grpc::ByteBuffer bytes);
 
 grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message);
 

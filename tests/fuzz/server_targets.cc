@@ -23,10 +23,11 @@
 #include "duet/v1/synthesis.pb.h"
 #include "model/base/request_id.h"
 #include "model/engine/clip_synthesis.h"
+#include "model/messages/message_text.h"
 #include "server/common/clock.h"
 #include "server/config/load_config.h"
 #include "server/metrics/metrics_endpoint.h"
-#include "server/security/access_list.h"
+#include "server/security/secret_files.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/validator.h"
@@ -83,7 +84,7 @@ Broken Answer(ValidatedRequest request) {
     if (!result.ok()) return absl::StrCat("a good request fails: ", result.status().ToString());
     const motion::Poses poses = synthesis.Accept(*result);
     v1::MotionChunk chunk;
-    FillChunk(request.reply, poses, answered, chunk);
+    AppendPositions(request.reply, poses, chunk.mutable_positions());
     if (!std::all_of(chunk.positions().begin(), chunk.positions().end(),
                      [](float value) { return std::isfinite(value); })) {
       return "an answer is not finite";
@@ -103,17 +104,19 @@ Broken Handle(const v1::SynthesizeRequest& request) {
 }
 
 Broken ServerConfig(absl::string_view input, bool json) {
-  absl::StatusOr<v1::ServerConfig> config = server::config::ParseConfigText(Std(input), json);
-  if (!config.ok()) return CheckRefusal(config.status());
+  using messages::MessageSyntax;
   server::config::CommandLine line;
-  line.config = *std::move(config);
+  const absl::Status read = messages::ParseMessage(
+      input, json ? MessageSyntax::kJson : MessageSyntax::kTextFormat, &line.config);
+  if (!read.ok()) return CheckRefusal(read);
   const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(line, kCores);
   if (!options.ok()) return CheckRefusal(options.status());
   // What is printed is a configuration file that says the same.
   const std::string printed = server::config::PrintConfig(*options, {});
-  config = server::config::ParseConfigText(printed, /*json=*/false);
-  if (!config.ok()) return absl::StrCat("a printed configuration is none: ", printed);
-  line.config = *std::move(config);
+  line.config.Clear();
+  if (!messages::ParseMessage(printed, MessageSyntax::kTextFormat, &line.config).ok()) {
+    return absl::StrCat("a printed configuration is none: ", printed);
+  }
   const absl::StatusOr<v1::ServerConfig> again = ResolveSettings(line, kCores);
   if (!again.ok()) return absl::StrCat("a printed configuration is refused: ", printed);
   return server::config::PrintConfig(*again, {}) == printed
@@ -163,10 +166,10 @@ Broken HttpRequest(absl::string_view input) {
   const server::metrics::HttpPages pages = {
       {"/metrics",
        [] {
-         return server::metrics::HttpPage{200, "text/plain", "up 1\n"};
+         return server::metrics::HttpPage{true, "text/plain", "up 1\n"};
        }},
       {"/readyz", [] {
-         return server::metrics::HttpPage{503, "text/plain", "loading\n"};
+         return server::metrics::HttpPage{false, "text/plain", "loading\n"};
        }}};
   const std::optional<std::string> reply = server::metrics::HttpReply(Std(input), pages);
   if (!reply.has_value()) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/lifecycle/validate_settings.h"
+#include "server/lifecycle/run_server.h"
 #include "tests/integration/running_server.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"

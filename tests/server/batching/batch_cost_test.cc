@@ -1,8 +1,8 @@
-#include "server/batching/batch_cost.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
+
+#include "server/batching/batch_decision.h"
 
 namespace duet::server::batching {
 namespace {

@@ -1,5 +1,3 @@
-#include "server/batching/batcher.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/batching/window_queue.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/gated_model.h"
 #include "tests/support/fake_synthesizer.h"

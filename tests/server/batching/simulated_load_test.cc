@@ -42,7 +42,7 @@ constexpr Engine kSlow = {0.008, 0.005};
 class Simulation {
  public:
   Simulation(const Engine& engine, int max_windows)
-      : engine_(engine), queue_({64, kWorkers, {max_windows}}) {}
+      : engine_(engine), queue_({kWorkers, 64, {max_windows}}) {}
 
   TimePoint now() const { return now_; }
   // Calls refused because their turn would have come too late.

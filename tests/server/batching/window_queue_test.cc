@@ -44,7 +44,7 @@ WindowJob LaterJob(const Model& model, Priority priority = Priority::kInteractiv
   return job;
 }
 
-WindowQueueOptions Options(int workers, int max_windows) { return {64, workers, {max_windows}}; }
+BatcherOptions Options(int workers, int max_windows) { return {workers, 64, {max_windows}}; }
 
 // A worker asks, and evaluates what it gets in this time; how many windows of which priority.
 struct Served {
@@ -73,7 +73,7 @@ TEST(WindowQueueTest, ReturnsEachWindowOnce) {
 
 TEST(WindowQueueTest, RejectsNewCallsWhenFull) {
   const Model model = NewModel();
-  WindowQueue queue({2, 1, {1}});
+  WindowQueue queue({1, 2, {1}});
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
   queue.Push(Job(model), kNow);
   queue.Push(Job(model), kNow);
@@ -102,7 +102,7 @@ TEST(WindowQueueTest, StartedCallsUseNoRoomOfNewOnes) {
 
 TEST(WindowQueueTest, WindowsThatNeverStartUseNoRoom) {
   const Model model = NewModel();
-  WindowQueue queue({2, 1, {1}});
+  WindowQueue queue({1, 2, {1}});
   WindowJob cancelled = Job(model), expired = Job(model);
   const auto flag = std::make_shared<std::atomic<bool>>(false);
   cancelled.cancelled = flag;
@@ -117,7 +117,7 @@ TEST(WindowQueueTest, WindowsThatNeverStartUseNoRoom) {
 
 TEST(WindowQueueTest, ReservesAQuarterForInteractiveCalls) {
   const Model model = NewModel();
-  WindowQueue queue({4, 1, {1}});
+  WindowQueue queue({1, 4, {1}});
   for (int i = 1; i <= 3; ++i) {
     ASSERT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
     queue.Push(Job(model, Priority::kBulk), kNow);
@@ -175,37 +175,7 @@ TEST(WindowQueueTest, RetriesWhenAnEstimateIsOld) {
   EXPECT_EQ(Serve(queue, later, milliseconds(1)).windows, 1u);
 }
 
-TEST(WindowQueueTest, LongCallYieldsToShortOnes) {
-  const Model model = NewModel();
-  WindowQueue queue(Options(1, 1));
-  WindowJob long_call = LaterJob(model);
-  long_call.call_windows = kShortCallWindows + 1;
-  WindowJob short_call = LaterJob(model);
-  short_call.call_windows = kShortCallWindows;
-  queue.Push(std::move(long_call), kNow);
-  queue.Push(std::move(short_call), kNow);
-  EXPECT_EQ(queue.Next(kNow).batch.windows[0].job.call_windows, kShortCallWindows);
-}
-
 // Both ask for more than there is.
-TEST(WindowQueueTest, BulkGetsAtLeastAnEighth) {
-  const Model model = NewModel();
-  WindowQueue queue(Options(1, 4));
-  common::TimePoint now = kNow;
-  std::size_t bulk = 0, all = 0;
-  for (int i = 0; i < 8; ++i) queue.Push(LaterJob(model, Priority::kInteractive), now);
-  for (int i = 0; i < 8; ++i) queue.Push(LaterJob(model, Priority::kBulk), now);
-  for (int i = 0; i < 400; ++i) {
-    const Served served = Serve(queue, now, milliseconds(4));
-    now += milliseconds(4);
-    for (std::size_t n = 0; n < served.windows; ++n) {
-      queue.Push(LaterJob(model, served.priority), now);
-    }
-    all += served.windows;
-    bulk += served.priority == Priority::kBulk ? served.windows : 0;
-  }
-  EXPECT_NEAR(static_cast<double>(bulk) / static_cast<double>(all), 1.0 / 8, 0.002);
-}
 
 TEST(WindowQueueTest, EmptyLaneAccumulatesNoClaims) {
   const Model model = NewModel();
@@ -300,7 +270,7 @@ TEST(WindowQueueTest, DropAllReportsTheReason) {
 
 TEST(WindowQueueTest, WaitsForMoreWindowsAfterABatchOfSeveral) {
   const Model model = NewModel();
-  WindowQueue queue({64, 1, {4, milliseconds(50)}});
+  WindowQueue queue({1, 64, {4, milliseconds(50)}});
   queue.Push(Job(model), kNow);
   EXPECT_EQ(Serve(queue, kNow, milliseconds(0)).windows, 1u);
   queue.Push(Job(model), kNow);
@@ -336,7 +306,7 @@ WindowJob JobOf(const Model& model, const std::string& client) {
 
 TEST(WindowQueueTest, AClientLeavesRoomForOthers) {
   const Model model = NewModel();
-  WindowQueueOptions options{8, 1, {1}};
+  BatcherOptions options{1, 8, {1}};
   options.client_share = 0.75;
   WindowQueue queue(options);
   int greedy = 0;
@@ -359,7 +329,7 @@ Model NewSampler() { return std::make_shared<FakeSynthesizer>(test::SamplingDesc
 
 TEST(WindowQueueTest, CandidatesTakeRoom) {
   const Model sampler = NewSampler();
-  WindowQueue queue({8, 1, {1}});
+  WindowQueue queue({1, 8, {1}});
   queue.Push(SamplingJob(sampler, 5), kNow);
   EXPECT_TRUE(queue.HasRoomFor(SamplingJob(sampler, 3), kNow));
   EXPECT_FALSE(queue.HasRoomFor(SamplingJob(sampler, 4), kNow));
@@ -372,7 +342,7 @@ TEST(WindowQueueTest, CandidatesTakeRoom) {
 
 TEST(WindowQueueTest, CandidatesCountInAClientsShareOfTheRoom) {
   const Model sampler = NewSampler();
-  WindowQueueOptions options{8, 1, {1}};
+  BatcherOptions options{1, 8, {1}};
   options.client_share = 0.75;
   WindowQueue queue(options);
   queue.Push(SamplingJob(sampler, 6, "greedy"), kNow);
@@ -392,27 +362,6 @@ TEST(WindowQueueTest, CallWithManyCandidatesIsLong) {
 }
 
 // Two clients that always have a window waiting: one with eight candidates, the other with one.
-TEST(WindowQueueTest, ClientsShareTheWorkWhateverTheirCandidates) {
-  const Model sampler = NewSampler();
-  WindowQueue queue(Options(1, 16));
-  std::map<std::string, int> frames;
-  const auto push = [&](const std::string& client) {
-    queue.Push(SamplingJob(sampler, client == "heavy" ? 8 : 1, client), kNow);
-  };
-  for (int i = 0; i < 20; ++i) {
-    push("heavy");
-    push("light");
-  }
-  for (int i = 0; i < 400; ++i) {
-    const Turn turn = queue.Next(kNow);
-    queue.Finished(turn.batch, kNow + milliseconds(1));
-    for (const QueuedWindow& window : turn.batch.windows) {
-      frames[window.job.client] += window.frames;
-      push(window.job.client);
-    }
-  }
-  EXPECT_NEAR(static_cast<double>(frames["heavy"]) / frames["light"], 1, 0.02);
-}
 
 TEST(WindowQueueTest, ReturningClientClaimsNoTurnsOfItsAbsence) {
   const Model model = NewModel();
@@ -429,16 +378,6 @@ TEST(WindowQueueTest, ReturningClientClaimsNoTurnsOfItsAbsence) {
   std::vector<std::string> order;
   for (int i = 0; i < 6; ++i) order.push_back(next());
   EXPECT_EQ(std::count(order.begin(), order.end(), "busy"), 3);
-}
-
-TEST(WindowQueueTest, BatchHoldsWindowsOfEachClient) {
-  const Model model = NewModel();
-  WindowQueue queue(Options(1, 2));
-  for (const char* client : {"a", "a", "a", "b"}) queue.Push(JobOf(model, client), kNow);
-  const Turn turn = queue.Next(kNow);
-  ASSERT_EQ(turn.batch.windows.size(), 2u);
-  EXPECT_EQ(turn.batch.windows[0].job.client, "a");
-  EXPECT_EQ(turn.batch.windows[1].job.client, "b");
 }
 
 TEST(WindowQueueTest, OrdersWindowsByTheTimeAtWhichTheyAreDueAndDropsNone) {

@@ -1,4 +1,3 @@
-#include "server/common/grpc_status.h"
 
 #include <gmock/gmock.h>
 #include <grpcpp/server_context.h>
@@ -32,7 +31,7 @@ TEST(ToGrpcStatusTest, KeepsEveryCode) {
 TEST(ToGrpcStatusTest, CarriesEveryDetail) {
   absl::Status status = absl::UnavailableError("later");
   AddBadRequest(status, {{"a.b[0]", "is 1"}, {"c", "is 2"}});
-  AddErrorInfo(status, kReasonDraining, {{"key", "value"}});
+  status = WithInfo(status, kReasonDraining, {{"key", "value"}});
   AddRetryInfo(status, absl::Milliseconds(1500));
   const Refusal refusal = Decode(ToGrpcStatus(status));
   EXPECT_EQ(refusal.code, absl::StatusCode::kUnavailable);

@@ -13,11 +13,14 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "server/config/settings.h"
+#include "tests/server/support/settings.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::config {
 namespace {
+
+using test::ParseConfigText;
 
 using test::TemporaryFolder;
 using test::WriteTestFile;

@@ -1,4 +1,3 @@
-#include "server/config/memory_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +6,13 @@
 
 #include "server/config/container_limits.h"
 #include "server/config/settings.h"
+#include "tests/server/support/settings.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
+
+using test::ResolveSettings;
 
 constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 

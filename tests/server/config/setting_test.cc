@@ -1,5 +1,3 @@
-#include "server/config/setting.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/config/load_config.h"
+#include "server/config/settings.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::config {

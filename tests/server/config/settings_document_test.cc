@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "model/base/file.h"
-#include "server/config/setting.h"
+#include "server/config/settings.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::config {

@@ -10,10 +10,14 @@
 #include <vector>
 
 #include "server/config/load_config.h"
+#include "tests/server/support/settings.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
+
+using test::ParseConfigText;
+using test::ResolveSettings;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 

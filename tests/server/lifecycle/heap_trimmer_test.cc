@@ -1,9 +1,9 @@
-#include "server/lifecycle/heap_trimmer.h"
-
 #include <gtest/gtest.h>
 #include <malloc.h>
 
 #include <cstdlib>
+
+#include "server/lifecycle/process_end.h"
 
 namespace duet::server::lifecycle {
 namespace {
@@ -29,47 +29,38 @@ TEST(LimitFreeMemoryTest, LargeBlocksAreReturnedToTheSystem) {
 }
 #endif
 
-class HeapTrimmerTest : public ::testing::Test {
- protected:
-  int trims_ = 0;
-  HeapTrimmer trimmer_{[this] { ++trims_; }};
-};
-
-TEST_F(HeapTrimmerTest, DoesNotTrimAnIdleHeap) {
-  for (int i = 0; i < 3; ++i) trimmer_.Look(0, 0);
-  EXPECT_EQ(trims_, 0);
+TEST(HeapTrimmerTest, TrimsAfterLargeRequestsAndAtTheirRelease) {
+  int trims = 0;
+  HeapTrimmer trimmer([&trims] { ++trims; });
+  const struct {
+    const char* what;
+    std::size_t received_bytes, held_bytes;
+    int trims;  // so far
+  } steps[] = {
+      {"idle", 0, 0, 0},
+      {"small requests are held", 0, 18000, 0},
+      {"and released", 0, 0, 0},
+      {"a large request arrives", 32 * kMegabyte, 32 * kMegabyte, 1},
+      {"once more", 32 * kMegabyte, 32 * kMegabyte, 2},
+      {"it is being answered", 32 * kMegabyte, 32 * kMegabyte, 2},
+      {"it is released", 32 * kMegabyte, 0, 3},
+      {"once more", 32 * kMegabyte, 0, 4},
+      {"idle", 32 * kMegabyte, 0, 4},
+      {"another arrives and is released", 64 * kMegabyte, 0, 5},
+  };
+  for (const auto& [what, received_bytes, held_bytes, expected] : steps) {
+    trimmer.Look(received_bytes, held_bytes);
+    EXPECT_EQ(trims, expected) << what;
+  }
 }
 
-TEST_F(HeapTrimmerTest, TrimsAfterLargeRequestsAndOnceMore) {
-  trimmer_.Look(64 * kMegabyte, 0);
-  EXPECT_EQ(trims_, 1);
-  trimmer_.Look(64 * kMegabyte, 0);
-  EXPECT_EQ(trims_, 2);
-  trimmer_.Look(64 * kMegabyte, 0);
-  EXPECT_EQ(trims_, 2);
-}
-
-TEST_F(HeapTrimmerTest, TrimsWhenACallReleasesALargeRequest) {
-  trimmer_.Look(32 * kMegabyte, 32 * kMegabyte);
-  trimmer_.Look(32 * kMegabyte, 32 * kMegabyte);
-  trimmer_.Look(32 * kMegabyte, 32 * kMegabyte);
-  EXPECT_EQ(trims_, 2);
-  trimmer_.Look(32 * kMegabyte, 0);
-  EXPECT_EQ(trims_, 3);
-}
-
-TEST_F(HeapTrimmerTest, DoesNotTrimForSmallRequests) {
-  trimmer_.Look(0, 9000);
-  trimmer_.Look(0, 18000);
-  trimmer_.Look(0, 0);
-  EXPECT_EQ(trims_, 0);
-}
-
-TEST_F(HeapTrimmerTest, TrimsWhenManySmallRequestsAreReleased) {
-  for (std::size_t held = 0; held <= 2 * kMegabyte; held += 9000) trimmer_.Look(0, held);
-  EXPECT_EQ(trims_, 0);
-  trimmer_.Look(0, 0);
-  EXPECT_EQ(trims_, 1);
+TEST(HeapTrimmerTest, TrimsWhenManySmallRequestsAreReleased) {
+  int trims = 0;
+  HeapTrimmer trimmer([&trims] { ++trims; });
+  for (std::size_t held = 0; held <= 2 * kMegabyte; held += 9000) trimmer.Look(0, held);
+  EXPECT_EQ(trims, 0);
+  trimmer.Look(0, 0);
+  EXPECT_EQ(trims, 1);
 }
 
 }  // namespace

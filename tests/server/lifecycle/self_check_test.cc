@@ -1,5 +1,3 @@
-#include "server/lifecycle/self_check.h"
-
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "server/lifecycle/grpc_server.h"
 #include "tests/server/support/running_service.h"
 #include "tests/support/matchers.h"
 

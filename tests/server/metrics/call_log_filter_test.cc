@@ -1,10 +1,10 @@
-#include "server/metrics/call_log_filter.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
 #include <vector>
+
+#include "server/metrics/log_sink.h"
 
 namespace duet::server::metrics {
 namespace {

@@ -107,7 +107,7 @@ TEST(ServerMetricsTest, CountsRejectionsByReason) {
   ServerMetrics metrics;
   CallRecord record = Record();
   record.status = absl::ResourceExhaustedError("full");
-  common::AddErrorInfo(record.status, common::kReasonQueueFull);
+  record.status = common::WithInfo(record.status, common::kReasonQueueFull);
   metrics.CallFinished(record);
   metrics.CallFinished(Record());
   const std::string text = metrics.Render();

@@ -1,5 +1,3 @@
-#include "server/registry/golden_check.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "server/registry/model_repository.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
 

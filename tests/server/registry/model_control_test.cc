@@ -1,5 +1,3 @@
-#include "server/registry/model_control.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/registry/model_manager.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"

@@ -1,11 +1,10 @@
-#include "server/security/access_list.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "server/security/secret_files.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::security {
@@ -22,7 +21,7 @@ absl::StatusOr<std::vector<Caller>> Parse(const std::string& text) {
 TEST(AccessListTest, ParsesCallersAndSkipsComments) {
   const auto callers =
       Parse(absl::StrCat("# who may call\n\n", "studio-a\tsynthesise  sha256:", kDigestA,
-                         " sha256:", kDigestB, " calls_per_second=2.5 frames_in_flight=20000\r\n",
+                         " sha256:", kDigestB, " calls_per_second=2.5\r\n",
                          "ops admin,synthesise cert:ops.example cert:spiffe://duet/ops\n"));
   ASSERT_THAT(callers, IsOk());
   ASSERT_EQ(callers->size(), 2u);
@@ -30,13 +29,11 @@ TEST(AccessListTest, ParsesCallersAndSkipsComments) {
   EXPECT_EQ(studio.name, "studio-a");
   EXPECT_THAT(studio.roles, ElementsAre(Role::kSynthesise));
   EXPECT_THAT(studio.token_digests, ElementsAre(kDigestA, kDigestB));
-  EXPECT_EQ(studio.limits.calls_per_second, 2.5);
-  EXPECT_EQ(studio.limits.frames_in_flight, 20000);
+  EXPECT_EQ(studio.calls_per_second, 2.5);
   const Caller& ops = callers->back();
   EXPECT_THAT(ops.roles, ElementsAre(Role::kSynthesise, Role::kAdmin));
   EXPECT_THAT(ops.certificate_names, ElementsAre("ops.example", "spiffe://duet/ops"));
-  EXPECT_FALSE(ops.limits.calls_per_second.has_value());
-  EXPECT_FALSE(ops.limits.frames_in_flight.has_value());
+  EXPECT_FALSE(ops.calls_per_second.has_value());
 }
 
 TEST(AccessListTest, AcceptsDigestsInUpperCase) {
@@ -69,8 +66,8 @@ TEST(AccessListTest, ReportsEveryWrongLine) {
 TEST(AccessListTest, RejectsCertificateNamesWithoutClientAuthorities) {
   const std::string text =
       absl::StrCat("a synthesise sha256:", kDigestA, "\n", "b synthesise cert:b.example\n");
-  EXPECT_THAT(ParseAccessList(text, "access", {/*certificates=*/true}), IsOk());
-  EXPECT_THAT(ParseAccessList(text, "access", {/*certificates=*/false}),
+  EXPECT_THAT(ParseAccessList(text, "access", /*certificates=*/true), IsOk());
+  EXPECT_THAT(ParseAccessList(text, "access", /*certificates=*/false),
               StatusIs(kInvalid,
                        "access:2: expected no cert: without tls_client_ca_file, got "
                        "\"cert:b.example\"; set tls_client_ca_file, or give b a token"));
@@ -96,9 +93,6 @@ TEST(AccessListTest, ErrorNamesTheLine) {
   refused("a" + good + " quota=3", "another word");
   for (const char* rate : {"0", "-1", "nan", "inf", "many", "", "1000001"}) {
     refused(absl::StrCat("a", good, " calls_per_second=", rate), "expected calls_per_second as");
-  }
-  for (const char* frames : {"0", "-1", "1.5", "", "9999999999"}) {
-    refused(absl::StrCat("a", good, " frames_in_flight=", frames), "expected frames_in_flight as");
   }
 }
 

@@ -168,35 +168,6 @@ TEST_F(SecuredServerTest, ACallerThatCallsTooOftenIsToldWhenToComeBack) {
   EXPECT_TRUE(List(channel, "Bearer f").ok());
 }
 
-TEST_F(SecuredServerTest, FramesInFlightAreACallersOwn) {
-  UseAccess(absl::StrCat("studio synthesise ", Known("s"), " frames_in_flight=", kFrames + 10, "\n",
-                         "farm synthesise ", Known("f"), "\n"));
-  GatedModel model;
-  Start(model.get());
-  const auto stub = v1::MotionSynthesis::NewStub(PlainText());
-  const auto call = [&stub](const std::string& token, int frames) {
-    TimedContext context;
-    context.AddMetadata("authorization", "Bearer " + token);
-    return Call(*stub, SampleRequest(frames), context).status;
-  };
-  grpc::Status first;
-  std::thread held([&] { first = call("s", kFrames); });
-  model.WaitUntilStarted(1);
-  const Refusal refusal = Decode(call("s", kFrames));
-  EXPECT_EQ(refusal.code, absl::StatusCode::kResourceExhausted);
-  EXPECT_EQ(refusal.reason, "FRAMES_IN_FLIGHT_EXCEEDED");
-  EXPECT_GT(refusal.retry_seconds, 0);
-  const Refusal never = Decode(call("s", kFrames + 11));
-  EXPECT_EQ(never.reason, "FRAMES_IN_FLIGHT_EXCEEDED");
-  EXPECT_LT(never.retry_seconds, 0);
-  model.Open();
-  EXPECT_TRUE(call("f", kFrames).ok());
-  held.join();
-  EXPECT_TRUE(first.ok());
-  // Whoever has the status has the frames back.
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(call("s", kFrames).ok()) << i;
-}
-
 TEST_F(SecuredServerTest, PlacesAreSharedByCallerNotByAddress) {
   UseAccess(
       absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"), "\n"));

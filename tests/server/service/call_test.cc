@@ -17,6 +17,7 @@
 
 #include "duet/v1/model.pb.h"
 #include "server/service/refusals.h"
+#include "server/service/wire.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/recording_observer.h"
 #include "tests/server/support/refusal.h"
@@ -81,7 +82,7 @@ struct SourceState {
   SourceEvents events;
   bool cancelled = false;
   int reports = 0;
-  std::vector<std::size_t> message_sizes;
+  std::vector<absl::StatusOr<v1::SynthesizeLiveRequest>> messages;
   int ends = 0, drains = 0;
 };
 
@@ -93,7 +94,7 @@ class PuppetSource final : public ReplySource {
     state_.events = std::move(events);
     return state_.start;
   }
-  NextReply Next(CallScope&) override {
+  NextReply Next(metrics::CallRecord&) override {
     if (state_.on_next) std::exchange(state_.on_next, nullptr)();
     if (state_.ready.empty()) return {nullptr, state_.end};
     reply_.set_name(state_.ready.front());
@@ -105,8 +106,8 @@ class PuppetSource final : public ReplySource {
     ++state_.reports;
     record.model = "puppet";
   }
-  void OnMessage(grpc::ByteBuffer bytes) override {
-    state_.message_sizes.push_back(bytes.Length());
+  void OnMessage(const absl::StatusOr<v1::SynthesizeLiveRequest>& message) override {
+    state_.messages.push_back(message);
   }
   void OnEndOfMessages() override { ++state_.ends; }
   void OnDraining() override { ++state_.drains; }
@@ -116,9 +117,10 @@ class PuppetSource final : public ReplySource {
   v1::ModelSelector reply_;
 };
 
-grpc::ByteBuffer Bytes(std::size_t size) {
-  const grpc::Slice slice(std::string(size, 'x'));
-  return {&slice, 1};
+grpc::ByteBuffer Bytes(uint32_t first_frame) {
+  v1::SynthesizeLiveRequest message;
+  message.mutable_frames()->set_first_frame(first_frame);
+  return SerializeMessage(message);
 }
 
 class CallTest : public ::testing::Test {
@@ -459,7 +461,9 @@ TEST_F(FurtherMessagesTest, AreReadOnlyOnRequestOneAtATime) {
   call_->OnMessage(Bytes(3));
   EXPECT_TRUE(call_->ReadNext(30));
   call_->OnMessage(Bytes(5));
-  EXPECT_THAT(source_.message_sizes, ElementsAre(3u, 5u));
+  ASSERT_THAT(source_.messages, SizeIs(2));
+  EXPECT_EQ(source_.messages[0]->frames().first_frame(), 3u);
+  EXPECT_EQ(source_.messages[1]->frames().first_frame(), 5u);
   EXPECT_EQ(source_.ends, 0);
 }
 
@@ -501,7 +505,7 @@ TEST_F(FurtherMessagesTest, MessagesAfterTheEndAreDropped) {
   call_->Abort(absl::CancelledError("gone"));
   call_->OnMessage(Bytes(3));
   call_->OnEndOfMessages();
-  EXPECT_THAT(source_.message_sizes, IsEmpty());
+  EXPECT_THAT(source_.messages, IsEmpty());
   EXPECT_EQ(source_.ends, 0);
   EXPECT_FALSE(call_->ReadNext(30)) << "the transport may be gone";
   EXPECT_EQ(transport_.reads, 1);

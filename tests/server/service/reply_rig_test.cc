@@ -39,12 +39,13 @@ Reply Answer(const Coordinates& coordinates, motion::Poses follower,
   for (int joint = kSkeleton.joint_count() - 1; joint >= 0; --joint) {
     mapping.joints.push_back(joint);
   }
-  const RigSource source = MakeRigSource(kSkeleton, test::SwayingMotion(40, kRate), kRate);
-  ReplyRig rig(source, coordinates, levelling, mapping.joints, follower);
+  mapping.rig = MakeRigSource(kSkeleton, test::SwayingMotion(40, kRate), kRate);
+  ReplyRig rig(mapping, follower);
   Reply reply;
   rig.FillHeader(reply.header);
   rig.AddRotations(&follower, reply.chunk);
-  FillChunk(mapping, follower, 0, reply.chunk);
+  reply.chunk.set_frame_count(static_cast<uint32_t>(follower.frame_count()));
+  AppendPositions(mapping, follower, reply.chunk.mutable_positions());
   return reply;
 }
 

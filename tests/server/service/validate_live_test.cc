@@ -1,14 +1,13 @@
-#include "server/service/validate_live.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <limits>
-#include <ostream>
 #include <string>
 
+#include "server/service/validator.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
@@ -175,29 +174,26 @@ TEST(ValidateLiveStartTest, EveryInvalidFieldIsNamed) {
                                    "start.history.follower_positions"));
 }
 
-// One way to spoil a good message, and what the refusal must say.
+// One way to spoil a good message, and the error, which names exactly this field.
 template <typename Message>
 struct Spoiled {
-  std::string name;
   std::function<void(Message&)> spoil;
   std::string field;
   std::string description;  // a part of it
-  absl::StatusCode code = kInvalidArgument;
-
-  friend void PrintTo(const Spoiled& spoiled, std::ostream* out) { *out << spoiled.name; }
 };
 
-template <typename Message>
-void ExpectRefused(const absl::Status& status, const Spoiled<Message>& spoiled) {
-  const Refusal refusal = Decode(status);
-  EXPECT_EQ(refusal.code, spoiled.code) << refusal.message;
-  EXPECT_THAT(refusal.Fields(), ElementsAre(spoiled.field)) << "exactly this field";
-  EXPECT_THAT(refusal.Of(spoiled.field), HasSubstr(spoiled.description));
-}
-
-template <typename Message>
-std::string NameOf(const ::testing::TestParamInfo<Spoiled<Message>>& info) {
-  return info.param.name;
+template <typename Message, std::size_t kCases, typename Validation>
+void ExpectRefused(const Spoiled<Message> (&cases)[kCases], const Message& good,
+                   const Validation& validate) {
+  for (const Spoiled<Message>& one : cases) {
+    SCOPED_TRACE(one.field + ": " + one.description);
+    Message message = good;
+    one.spoil(message);
+    const Refusal refusal = Decode(validate(message).status());
+    EXPECT_EQ(refusal.code, kInvalidArgument) << refusal.message;
+    EXPECT_THAT(refusal.Fields(), ElementsAre(one.field));
+    EXPECT_THAT(refusal.Of(one.field), HasSubstr(one.description));
+  }
 }
 
 // Centimetres that are declared as metres.
@@ -206,92 +202,57 @@ void Scale(google::protobuf::RepeatedField<float>* metres) {
 }
 
 using Start = v1::LiveStart;
-class StartRefusalTest : public ::testing::TestWithParam<Spoiled<Start>> {};
 
-TEST_P(StartRefusalTest, NamesTheField) {
-  Start start = Resumed();
-  GetParam().spoil(start);
-  ExpectRefused(Validate(start).status(), GetParam());
+TEST(ValidateLiveStartTest, ErrorNamesFieldExpectedAndActualValue) {
+  const Spoiled<Start> cases[] = {
+      {[](Start& s) { s.clear_label_vector(); }, "start.label_vector", ""},
+      {[](Start& s) { s.mutable_leader()->set_frame_rate_hz(241); }, "start.leader.frame_rate_hz",
+       "got 241"},
+      {[](Start& s) { s.mutable_leader()->add_positions(0); }, "start.leader.positions", "got 451"},
+      {[](Start& s) { s.set_candidates(17); }, "start.candidates", "17"},
+      {[](Start& s) { s.set_delay_frames(11); }, "start.delay_frames", "expected 0 to 10, got 11"},
+      {[](Start& s) { s.set_delay_frames(8); }, "start.delay_frames",
+       "expected at most 0.5 s, got 8 frames"},
+      {[](Start& s) { s.set_plan_frames(31); }, "start.plan_frames", "expected 0 to 30, got 31"},
+      {[](Start& s) { s.mutable_follower_start()->mutable_root_position()->set_x(1); },
+       "start.follower_start", "no value together with history"},
+      {[](Start& s) { s.mutable_history()->set_first_frame(uint32_t{kMaxLiveFrames}); },
+       "start.history.first_frame", "less than 1073741824"},
+      {[](Start& s) { s.mutable_history()->clear_follower_frame_count(); },
+       "start.history.follower_frame_count", "expected 1 to 10, the frames"},
+      {[](Start& s) {
+         s.mutable_leader()->clear_positions();
+         s.mutable_leader()->set_frame_count(0);
+       },
+       "start.leader.frame_count", "expected the leader's frames from"},
+      {[](Start& s) { s.mutable_history()->set_follower_frame_count(11); },
+       "start.history.follower_frame_count", "got 11"},
+      {[](Start& s) { s.mutable_history()->add_follower_positions(0); },
+       "start.history.follower_positions", "expected 360 values (8 frames x 15"},
+      {[](Start& s) { Scale(s.mutable_history()->mutable_follower_positions()); },
+       "start.history.follower_positions", "the size of a person"},
+  };
+  ExpectRefused(cases, Resumed(), [](const Start& start) { return Validate(start); });
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Start, StartRefusalTest,
-    ::testing::Values(Spoiled<Start>{"no_labels", [](Start& s) { s.clear_label_vector(); },
-                                     "start.label_vector", ""},
-                      Spoiled<Start>{"rate",
-                                     [](Start& s) { s.mutable_leader()->set_frame_rate_hz(241); },
-                                     "start.leader.frame_rate_hz", "got 241"},
-                      Spoiled<Start>{"positions",
-                                     [](Start& s) { s.mutable_leader()->add_positions(0); },
-                                     "start.leader.positions", "got 451"},
-                      Spoiled<Start>{"candidates", [](Start& s) { s.set_candidates(17); },
-                                     "start.candidates", "17"},
-                      Spoiled<Start>{"delay", [](Start& s) { s.set_delay_frames(11); },
-                                     "start.delay_frames", "expected 0 to 10, got 11"},
-                      Spoiled<Start>{"delay_seconds", [](Start& s) { s.set_delay_frames(8); },
-                                     "start.delay_frames", "expected at most 0.5 s, got 8 frames"},
-                      Spoiled<Start>{"plan", [](Start& s) { s.set_plan_frames(31); },
-                                     "start.plan_frames", "expected 0 to 30, got 31"}),
-    NameOf<Start>);
-
-INSTANTIATE_TEST_SUITE_P(
-    History, StartRefusalTest,
-    ::testing::Values(
-        Spoiled<Start>{
-            "start_too",
-            [](Start& s) { s.mutable_follower_start()->mutable_root_position()->set_x(1); },
-            "start.follower_start", "no value together with history"},
-        Spoiled<Start>{
-            "first",
-            [](Start& s) { s.mutable_history()->set_first_frame(uint32_t{kMaxLiveFrames}); },
-            "start.history.first_frame", "less than 1073741824"},
-        Spoiled<Start>{"none", [](Start& s) { s.mutable_history()->clear_follower_frame_count(); },
-                       "start.history.follower_frame_count", "expected 1 to 10, the frames"},
-        Spoiled<Start>{"no_leader",
-                       [](Start& s) {
-                         s.mutable_leader()->clear_positions();
-                         s.mutable_leader()->set_frame_count(0);
-                       },
-                       "start.leader.frame_count", "expected the leader's frames from"},
-        Spoiled<Start>{"more_than_leader",
-                       [](Start& s) { s.mutable_history()->set_follower_frame_count(11); },
-                       "start.history.follower_frame_count", "got 11"},
-        Spoiled<Start>{"values", [](Start& s) { s.mutable_history()->add_follower_positions(0); },
-                       "start.history.follower_positions", "expected 360 values (8 frames x 15"},
-        Spoiled<Start>{"centimetres",
-                       [](Start& s) { Scale(s.mutable_history()->mutable_follower_positions()); },
-                       "start.history.follower_positions", "the size of a person"}),
-    NameOf<Start>);
-
-INSTANTIATE_TEST_SUITE_P(
-    Rotations, StartRefusalTest,
-    ::testing::Values(Spoiled<Start>{"no_rig_leader",
-                                     [](Start& s) {
-                                       s = ResumedWithRotations();
-                                       s.mutable_history()->clear_rig_leader_positions();
-                                     },
-                                     "start.history.rig_leader_positions", "expected 45 values"},
-                      Spoiled<Start>{"rig_follower_too_long",
-                                     [](Start& s) {
-                                       s = ResumedWithRotations();
-                                       s.mutable_history()->add_rig_follower_positions(0);
-                                     },
-                                     "start.history.rig_follower_positions", "got 46"},
-                      Spoiled<Start>{"rig_leader_centimetres",
-                                     [](Start& s) {
-                                       s = ResumedWithRotations();
-                                       Scale(s.mutable_history()->mutable_rig_leader_positions());
-                                     },
-                                     "start.history.rig_leader_positions", "the size of a person"},
-                      Spoiled<Start>{"unit_without_rotations",
-                                     [](Start& s) {
-                                       s = New();
-                                       s.set_reply_rotations(true);
-                                       s.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
-                                       s.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
-                                     },
-                                     "start.reply_rotations", "LENGTH_UNIT_METRES"}),
-    NameOf<Start>);
+TEST(ValidateLiveStartTest, ErrorNamesFieldsOfRotations) {
+  const Spoiled<Start> cases[] = {
+      {[](Start& s) { s.mutable_history()->clear_rig_leader_positions(); },
+       "start.history.rig_leader_positions", "expected 45 values"},
+      {[](Start& s) { s.mutable_history()->add_rig_follower_positions(0); },
+       "start.history.rig_follower_positions", "got 46"},
+      {[](Start& s) { Scale(s.mutable_history()->mutable_rig_leader_positions()); },
+       "start.history.rig_leader_positions", "the size of a person"},
+      {[](Start& s) {
+         s = New();
+         s.set_reply_rotations(true);
+         s.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
+         s.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
+       },
+       "start.reply_rotations", "LENGTH_UNIT_METRES"},
+  };
+  ExpectRefused(cases, ResumedWithRotations(), [](const Start& start) { return Validate(start); });
+}
 
 TEST(ValidateLiveStartTest, MoreThanTenSecondsOfHistory) {
   v1::LiveStart start = New();
@@ -302,7 +263,6 @@ TEST(ValidateLiveStartTest, MoreThanTenSecondsOfHistory) {
 }
 
 using Frames = v1::LeaderFrames;
-class FramesRefusalTest : public ::testing::TestWithParam<Spoiled<Frames>> {};
 
 Frames GoodFrames(int count = 4) {
   Frames frames;
@@ -313,7 +273,8 @@ Frames GoodFrames(int count = 4) {
 }
 
 absl::StatusOr<motion::Poses> Read(const Frames& frames) {
-  return ReadLeaderFrames(frames, Validate(New())->reply, RequestLimits());
+  return ReadLeaderFrames(frames, Validate(New())->reply, test::FakeDescription(), RequestLimits(),
+                          /*check_size=*/false);
 }
 
 TEST(ReadLeaderFramesTest, ReadsUpToTenSeconds) {
@@ -324,31 +285,22 @@ TEST(ReadLeaderFramesTest, ReadsUpToTenSeconds) {
   }
 }
 
-TEST_P(FramesRefusalTest, NamesTheField) {
-  Frames frames = GoodFrames();
-  GetParam().spoil(frames);
-  ExpectRefused(Read(frames).status(), GetParam());
+TEST(ReadLeaderFramesTest, ErrorNamesFieldExpectedAndActualValue) {
+  const Spoiled<Frames> cases[] = {
+      {[](Frames& f) {
+         f.clear_frame_count();
+         f.clear_positions();
+       },
+       "frames.frame_count", "expected 1 to 150, got 0"},
+      {[](Frames& f) { f = GoodFrames(151); }, "frames.frame_count", "got 151"},
+      {[](Frames& f) { f.set_first_frame(uint32_t{kMaxLiveFrames}); }, "frames.first_frame",
+       "less than 1073741824"},
+      {[](Frames& f) { f.mutable_positions()->RemoveLast(); }, "frames.positions",
+       "expected 180 values (4 frames x 15 joints x 3), got 179"},
+      {[](Frames& f) { f.set_positions(50, kNan); }, "frames.positions[50]", "finite"},
+  };
+  ExpectRefused(cases, GoodFrames(), [](const Frames& frames) { return Read(frames); });
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Frames, FramesRefusalTest,
-    ::testing::Values(
-        Spoiled<Frames>{"none",
-                        [](Frames& f) {
-                          f.clear_frame_count();
-                          f.clear_positions();
-                        },
-                        "frames.frame_count", "expected 1 to 150, got 0"},
-        Spoiled<Frames>{"too_many", [](Frames& f) { f = GoodFrames(151); }, "frames.frame_count",
-                        "got 151"},
-        Spoiled<Frames>{"first", [](Frames& f) { f.set_first_frame(uint32_t{kMaxLiveFrames}); },
-                        "frames.first_frame", "less than 1073741824"},
-        Spoiled<Frames>{"values", [](Frames& f) { f.mutable_positions()->RemoveLast(); },
-                        "frames.positions",
-                        "expected 180 values (4 frames x 15 joints x 3), got 179"},
-        Spoiled<Frames>{"nan", [](Frames& f) { f.set_positions(50, kNan); }, "frames.positions[50]",
-                        "finite"}),
-    NameOf<Frames>);
 
 TEST(ReadLeaderFramesTest, EveryInvalidFieldIsNamed) {
   Frames frames;
@@ -359,7 +311,6 @@ TEST(ReadLeaderFramesTest, EveryInvalidFieldIsNamed) {
 }
 
 using Change = v1::LabelChange;
-class ChangeRefusalTest : public ::testing::TestWithParam<Spoiled<Change>> {};
 
 constexpr int kNext = 40;
 
@@ -392,29 +343,21 @@ TEST(ReadLabelChangeTest, LimitsAreIncluded) {
   EXPECT_THAT(Read(change), IsOk());
 }
 
-TEST_P(ChangeRefusalTest, NamesTheField) {
-  Change change = GoodChange();
-  GetParam().spoil(change);
-  ExpectRefused(Read(change).status(), GetParam());
+TEST(ReadLabelChangeTest, ErrorNamesFieldExpectedAndActualValue) {
+  const Spoiled<Change> cases[] = {
+      {[](Change& c) { c.set_frame(kNext - 1); }, "label_change.frame",
+       "expected at least 40, the first frame that is not final"},
+      {[](Change& c) { c.set_ease_frames(151); }, "label_change.ease_frames",
+       "expected at most 150"},
+      {[](Change& c) { c.clear_label_vector(); }, "label_change.label_vector.weights",
+       "at least one"},
+      {[](Change& c) { AddWeight(*c.mutable_label_vector(), "tango", 1); },
+       "label_change.label_vector.weights[1].interaction_class", "tango"},
+      {[](Change& c) { c.mutable_label_vector()->mutable_weights(0)->set_weight(2.5F); },
+       "label_change.label_vector.weights[0].weight", "2.5"},
+  };
+  ExpectRefused(cases, GoodChange(), [](const Change& change) { return Read(change); });
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Change, ChangeRefusalTest,
-    ::testing::Values(
-        Spoiled<Change>{"final", [](Change& c) { c.set_frame(kNext - 1); }, "label_change.frame",
-                        "expected at least 40, the first frame that is not final"},
-        Spoiled<Change>{"ease", [](Change& c) { c.set_ease_frames(151); },
-                        "label_change.ease_frames", "expected at most 150"},
-        Spoiled<Change>{"no_weights", [](Change& c) { c.clear_label_vector(); },
-                        "label_change.label_vector.weights", "at least one"},
-        Spoiled<Change>{"class",
-                        [](Change& c) { AddWeight(*c.mutable_label_vector(), "tango", 1); },
-                        "label_change.label_vector.weights[1].interaction_class", "tango"},
-        Spoiled<Change>{
-            "weight",
-            [](Change& c) { c.mutable_label_vector()->mutable_weights(0)->set_weight(2.5F); },
-            "label_change.label_vector.weights[0].weight", "2.5"}),
-    NameOf<Change>);
 
 }  // namespace
 }  // namespace duet::server::service

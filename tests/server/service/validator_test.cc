@@ -1,11 +1,11 @@
 #include "server/service/validator.h"
 
 #include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -30,35 +30,11 @@ constexpr int kJoints = 15;
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
 const float kNan = std::numeric_limits<float>::quiet_NaN();
-const float kInfinity = std::numeric_limits<float>::infinity();
 
 absl::StatusOr<ValidatedRequest> Validate(
     const v1::SynthesizeRequest& request,
     const engine::ModelDescription& model = FakeDescription()) {
   return ValidateRequest(request, model, RequestLimits());
-}
-
-// One way to spoil a good request, and what the refusal must say.
-struct Spoiled {
-  std::string name;
-  std::function<void(v1::SynthesizeRequest&)> spoil;
-  std::string field;
-  std::string description;  // a part of it
-  absl::StatusCode code = kInvalidArgument;
-
-  friend void PrintTo(const Spoiled& spoiled, std::ostream* out) { *out << spoiled.name; }
-};
-
-class RefusalTest : public ::testing::TestWithParam<Spoiled> {};
-
-TEST_P(RefusalTest, ErrorNamesFieldExpectedAndActualValue) {
-  v1::SynthesizeRequest request = SampleRequest();
-  GetParam().spoil(request);
-  const Refusal refusal = Decode(Validate(request).status());
-  EXPECT_EQ(refusal.code, GetParam().code) << refusal.message;
-  EXPECT_THAT(refusal.Fields(), ElementsAre(GetParam().field)) << "exactly this field";
-  EXPECT_THAT(refusal.Of(GetParam().field), HasSubstr(GetParam().description));
-  EXPECT_THAT(refusal.message, HasSubstr(GetParam().field));
 }
 
 void SetRoot(v1::SynthesizeRequest& request, float x, float y, float z) {
@@ -93,257 +69,208 @@ v1::JointConstraint& AddConstraint(v1::SynthesizeRequest& request, const std::st
   return constraint;
 }
 
-void AddKeyframe(v1::SynthesizeRequest& request, uint32_t frame) {
-  request.clear_label_vector();
-  v1::LabelKeyframe& keyframe = *request.add_label_keyframes();
-  keyframe.set_frame(frame);
-  AddWeight(*keyframe.mutable_label_vector(), "hug", 0.5F);
-}
-
 using Request = v1::SynthesizeRequest;
+using Spoil = std::function<void(Request&)>;
 
 void Scale(Request& request, float factor) {
   for (float& value : *request.mutable_leader()->mutable_positions()) value *= factor;
 }
 
-std::string SpoiledName(const ::testing::TestParamInfo<Spoiled>& spoiled) {
-  return spoiled.param.name;
+// Merges a text into the request: sets fields, and adds to repeated ones.
+Spoil Text(const std::string& text) {
+  return [text](Request& request) {
+    ASSERT_TRUE(google::protobuf::TextFormat::MergeFromString(text, &request)) << text;
+  };
+}
+// The text `count` times.
+Spoil Times(int count, const std::string& text) {
+  return [=](Request& request) {
+    Request added;
+    Text(text)(added);
+    for (int i = 0; i < count; ++i) request.MergeFrom(added);
+  };
+}
+Spoil Position(int index, float value) {
+  return [=](Request& request) { request.mutable_leader()->set_positions(index, value); };
+}
+// Leaders of another number of joints.
+Spoil MoreJoints(const std::string& name) {
+  return [name](Request& request) {
+    request.mutable_leader()->add_joint_names(name);
+    for (int i = 0; i < 40 * 3; ++i) request.mutable_leader()->add_positions(0);
+  };
+}
+Spoil Keyframes(int count, const std::string& text) {
+  return [=](Request& request) {
+    request.clear_label_vector();
+    for (int i = 0; i < count; ++i) Text(text)(request);
+  };
+}
+Spoil Pose(int values, float last) {
+  return [=](Request& request) {
+    auto* positions = request.mutable_follower_start()->mutable_pose()->mutable_positions();
+    positions->Resize(values, 0);
+    positions->Set(values - 1, last);
+  };
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Leader, RefusalTest,
-    ::testing::Values(
-        Spoiled{"nan", [](Request& r) { r.mutable_leader()->set_positions(17, kNan); },
-                "leader.positions[17]", "expected a finite number, got nan"},
-        Spoiled{"centimetres", [](Request& r) { Scale(r, 100); }, "leader.positions",
-                "m from the middle), got 4"},
-        Spoiled{"zeros", [](Request& r) { Scale(r, 0); }, "leader.positions",
-                "m from the middle), got all joints in one point in every frame"},
-        Spoiled{"metres_as_millimetres",
-                [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES); },
-                "leader.positions", "check leader.unit"},
-        Spoiled{"too_few_values",
-                [](Request& r) { r.mutable_leader()->mutable_positions()->RemoveLast(); },
-                "leader.positions", "expected 1800 values (40 frames x 15 joints x 3), got 1799"},
-        Spoiled{"one_frame",
-                [](Request& r) {
-                  r.mutable_leader()->set_frame_count(1);
-                  r.mutable_leader()->mutable_positions()->Truncate(kJoints * 3);
-                },
-                "leader.frame_count", "expected at least 2, got 1"},
-        Spoiled{"no_rate", [](Request& r) { r.mutable_leader()->clear_frame_rate_hz(); },
-                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got 0"},
-        Spoiled{"high_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(240.5); },
-                "leader.frame_rate_hz", "frames per second, got 240.5"},
-        Spoiled{"nan_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kNan); },
-                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got nan"},
-        Spoiled{"no_unit", [](Request& r) { r.mutable_leader()->clear_unit(); }, "leader.unit",
-                "or LENGTH_UNIT_SBU_NORMALISED, got LENGTH_UNIT_UNSPECIFIED"},
-        Spoiled{"unknown_unit",
-                [](Request& r) { r.mutable_leader()->set_unit(static_cast<v1::LengthUnit>(17)); },
-                "leader.unit", "or LENGTH_UNIT_SBU_NORMALISED, got 17"},
-        Spoiled{"no_up_axis", [](Request& r) { r.mutable_leader()->clear_up_axis(); },
-                "leader.up_axis", "or UP_AXIS_Y_DOWN, got UP_AXIS_UNSPECIFIED"},
-        Spoiled{"sbu_unit_with_y_up",
-                [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED); },
-                "leader.up_axis",
-                "expected UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED, got UP_AXIS_Y_UP"},
-        Spoiled{"far_away", [](Request& r) { r.mutable_leader()->set_positions(4, -20000); },
-                "leader.positions[3..5]",
-                "expected at most 10000 m from the origin along each axis"},
-        Spoiled{"overflowing",
-                [](Request& r) {
-                  r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
-                  r.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
-                  r.mutable_leader()->set_positions(3, 3e38F);
-                },
-                "leader.positions[3..5]",
-                "expected at most 10000 m from the origin along each axis"}),
-    SpoiledName);
+constexpr char kSbu[] = "leader { unit: LENGTH_UNIT_SBU_NORMALISED up_axis: UP_AXIS_Y_DOWN }";
+constexpr char kHug[] =
+    "label_keyframes { frame: 20 label_vector {"
+    "  weights { interaction_class: 'hug' weight: 0.5 } } }";
 
-INSTANTIATE_TEST_SUITE_P(
-    Joints, RefusalTest,
-    ::testing::Values(
-        Spoiled{"missing",
-                [](Request& r) {
-                  r.mutable_leader()->mutable_joint_names()->RemoveLast();
-                  r.mutable_leader()->mutable_positions()->Truncate(40 * 14 * 3);
-                },
-                "leader.joint_names",
-                "expected all 15 joints of model fake, got none for right_foot",
-                kFailedPrecondition},
-        Spoiled{"none",
-                [](Request& r) {
-                  r.mutable_leader()->clear_joint_names();
-                  r.mutable_leader()->clear_positions();
-                },
-                "leader.joint_names", "got none for head, neck, torso", kFailedPrecondition},
-        Spoiled{"extra",
-                [](Request& r) {
-                  r.mutable_leader()->add_joint_names("tail");
-                  for (int i = 0; i < 40 * 3; ++i) r.mutable_leader()->add_positions(0);
-                },
-                "leader.joint_names[15]", "right_foot), got \"tail\"", kFailedPrecondition},
-        Spoiled{"repeated",
-                [](Request& r) {
-                  r.mutable_leader()->add_joint_names("head");
-                  for (int i = 0; i < 40 * 3; ++i) r.mutable_leader()->add_positions(0);
-                },
-                "leader.joint_names[15]", "got \"head\" again after joint_names[0]",
-                kFailedPrecondition},
-        Spoiled{"absurdly_many",
-                [](Request& r) {
-                  r.mutable_leader()->clear_positions();
-                  for (int i = 0; i < 100000; ++i) r.mutable_leader()->add_joint_names("x");
-                  r.mutable_leader()->mutable_positions()->Resize(40 * 100015 * 3, 0);
-                },
-                "leader.joint_names", "expected the 15 joints of model fake, got 100015 names",
-                kFailedPrecondition}),
-    SpoiledName);
+// A good request is spoiled, and the error names exactly this field.
+const struct {
+  Spoil spoil;
+  std::string field;
+  std::string description;  // a part of it
+  absl::StatusCode code = kInvalidArgument;
+} kSpoiled[] = {
+    {Position(17, kNan), "leader.positions[17]", "expected a finite number, got nan"},
+    {[](Request& r) { Scale(r, 100); }, "leader.positions", "m from the middle), got 4"},
+    {[](Request& r) { Scale(r, 0); }, "leader.positions",
+     "m from the middle), got all joints in one point in every frame"},
+    {Text("leader { unit: LENGTH_UNIT_MILLIMETRES }"), "leader.positions", "check leader.unit"},
+    {Text("leader { positions: 1 }"), "leader.positions",
+     "expected 1800 values (40 frames x 15 joints x 3), got 1801"},
+    {[](Request& r) {
+       r.mutable_leader()->set_frame_count(1);
+       r.mutable_leader()->mutable_positions()->Truncate(kJoints * 3);
+     },
+     "leader.frame_count", "expected at least 2, got 1"},
+    {Text("leader { frame_rate_hz: 0 }"), "leader.frame_rate_hz",
+     "expected 1 to 240 frames per second, got 0"},
+    {Text("leader { frame_rate_hz: 240.5 }"), "leader.frame_rate_hz",
+     "frames per second, got 240.5"},
+    {Text("leader { frame_rate_hz: nan }"), "leader.frame_rate_hz",
+     "expected 1 to 240 frames per second, got nan"},
+    {Text("leader { unit: 0 }"), "leader.unit",
+     "or LENGTH_UNIT_SBU_NORMALISED, got LENGTH_UNIT_UNSPECIFIED"},
+    {[](Request& r) { r.mutable_leader()->set_unit(static_cast<v1::LengthUnit>(17)); },
+     "leader.unit", "or LENGTH_UNIT_SBU_NORMALISED, got 17"},
+    {Text("leader { up_axis: 0 }"), "leader.up_axis", "or UP_AXIS_Y_DOWN, got UP_AXIS_UNSPECIFIED"},
+    {Text("leader { unit: LENGTH_UNIT_SBU_NORMALISED }"), "leader.up_axis",
+     "expected UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED, got UP_AXIS_Y_UP"},
+    {Position(4, -20000), "leader.positions[3..5]",
+     "expected at most 10000 m from the origin along each axis"},
+    {[](Request& r) {
+       Text(kSbu)(r);
+       Position(3, 3e38F)(r);  // overflows
+     },
+     "leader.positions[3..5]", "expected at most 10000 m from the origin along each axis"},
 
-INSTANTIATE_TEST_SUITE_P(
-    Labels, RefusalTest,
-    ::testing::Values(
-        Spoiled{"missing", [](Request& r) { r.clear_label_vector(); }, "label_vector",
-                "expected label_vector or label_keyframes, got neither"},
-        Spoiled{"both_forms",
-                [](Request& r) {
-                  AddKeyframe(r, 0);
-                  AddWeight(*r.mutable_label_vector(), "kick", 1);
-                },
-                "label_keyframes", "expected label_vector or label_keyframes, got both"},
-        Spoiled{"empty", [](Request& r) { r.mutable_label_vector()->clear_weights(); },
-                "label_vector.weights", "expected a weight for at least one of kick"},
-        Spoiled{"unknown_class",
-                [](Request& r) { AddWeight(*r.mutable_label_vector(), "dance", 1); },
-                "label_vector.weights[1].interaction_class", ", got \"dance\""},
-        Spoiled{"repeated_class",
-                [](Request& r) { AddWeight(*r.mutable_label_vector(), "kick", 1); },
-                "label_vector.weights[1].interaction_class", "got \"kick\" again after weights[0]"},
-        Spoiled{"too_large", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", 2.5F); },
-                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got 2.5"},
-        Spoiled{"nan", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", kNan); },
-                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got nan"},
-        Spoiled{"absurdly_many",
-                [](Request& r) {
-                  for (int i = 0; i < 1000; ++i) AddWeight(*r.mutable_label_vector(), "x", 1);
-                },
-                "label_vector.weights",
-                "expected at most one weight for each of 6 classes, got 1001"}),
-    SpoiledName);
+    {[](Request& r) {
+       r.mutable_leader()->mutable_joint_names()->RemoveLast();
+       r.mutable_leader()->mutable_positions()->Truncate(40 * 14 * 3);
+     },
+     "leader.joint_names", "expected all 15 joints of model fake, got none for right_foot",
+     kFailedPrecondition},
+    {[](Request& r) {
+       r.mutable_leader()->clear_joint_names();
+       r.mutable_leader()->clear_positions();
+     },
+     "leader.joint_names", "got none for head, neck, torso", kFailedPrecondition},
+    {MoreJoints("tail"), "leader.joint_names[15]", "right_foot), got \"tail\"",
+     kFailedPrecondition},
+    {MoreJoints("head"), "leader.joint_names[15]", "got \"head\" again after joint_names[0]",
+     kFailedPrecondition},
+    {[](Request& r) {
+       for (int i = 0; i < 100000; ++i) r.mutable_leader()->add_joint_names("x");
+       r.mutable_leader()->mutable_positions()->Resize(40 * 100015 * 3, 0);
+     },
+     "leader.joint_names", "expected the 15 joints of model fake, got 100015 names",
+     kFailedPrecondition},
 
-INSTANTIATE_TEST_SUITE_P(
-    Keyframes, RefusalTest,
-    ::testing::Values(Spoiled{"past_the_end", [](Request& r) { AddKeyframe(r, 40); },
-                              "label_keyframes[0].frame",
-                              "expected less than 40, the number of frames, got 40"},
-                      Spoiled{"backwards",
-                              [](Request& r) {
-                                AddKeyframe(r, 20);
-                                AddKeyframe(r, 10);
-                              },
-                              "label_keyframes[1].frame",
-                              "expected more than the previous keyframe's 20, got 10"},
-                      Spoiled{"empty_vector",
-                              [](Request& r) {
-                                AddKeyframe(r, 0);
-                                r.mutable_label_keyframes(0)->clear_label_vector();
-                              },
-                              "label_keyframes[0].label_vector.weights", "got none"},
-                      Spoiled{"too_many",
-                              [](Request& r) {
-                                for (uint32_t i = 0; i < 4097; ++i) AddKeyframe(r, i);
-                              },
-                              "label_keyframes", "expected at most 4096 keyframes, got 4097"}),
-    SpoiledName);
+    {[](Request& r) { r.clear_label_vector(); }, "label_vector",
+     "expected label_vector or label_keyframes, got neither"},
+    {Text(kHug), "label_keyframes", "expected label_vector or label_keyframes, got both"},
+    {[](Request& r) { r.mutable_label_vector()->clear_weights(); }, "label_vector.weights",
+     "expected a weight for at least one of kick"},
+    {Text("label_vector { weights { interaction_class: 'dance' } }"),
+     "label_vector.weights[1].interaction_class", ", got \"dance\""},
+    {Text("label_vector { weights { interaction_class: 'kick' } }"),
+     "label_vector.weights[1].interaction_class", "got \"kick\" again after weights[0]"},
+    {Text("label_vector { weights { interaction_class: 'hug' weight: 2.5 } }"),
+     "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got 2.5"},
+    {Text("label_vector { weights { interaction_class: 'hug' weight: nan } }"),
+     "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got nan"},
+    {Times(1000, "label_vector { weights { interaction_class: 'x' } }"), "label_vector.weights",
+     "expected at most one weight for each of 6 classes, got 1001"},
+    {Keyframes(1, std::string(kHug).replace(24, 2, "40")), "label_keyframes[0].frame",
+     "expected less than 40, the number of frames, got 40"},
+    {Keyframes(2, kHug), "label_keyframes[1].frame",
+     "expected more than the previous keyframe's 20, got 20"},
+    {Keyframes(1, "label_keyframes {}"), "label_keyframes[0].label_vector.weights", "got none"},
+    {Keyframes(4097, kHug), "label_keyframes", "expected at most 4096, got 4097"},
 
-INSTANTIATE_TEST_SUITE_P(
-    FollowerStart, RefusalTest,
-    ::testing::Values(
-        Spoiled{"pose_of_zeros",
-                [](Request& r) {
-                  auto* positions = r.mutable_follower_start()->mutable_pose()->mutable_positions();
-                  positions->Resize(3 * kJoints, 0);
-                },
-                "follower_start.pose.positions", "got all joints in one point in every frame"},
-        Spoiled{"empty", [](Request& r) { r.mutable_follower_start(); }, "follower_start.start",
-                "expected root_position or pose, got neither"},
-        Spoiled{"short_pose",
-                [](Request& r) { r.mutable_follower_start()->mutable_pose()->add_positions(1); },
-                "follower_start.pose.positions", "expected 45 values (15 joints x 3), got 1"},
-        Spoiled{"nan_pose",
-                [](Request& r) {
-                  auto* positions = r.mutable_follower_start()->mutable_pose()->mutable_positions();
-                  positions->Resize(45, 0);
-                  positions->Set(44, kNan);
-                },
-                "follower_start.pose.positions[44]", "expected a finite number, got nan"}),
-    SpoiledName);
+    {Pose(45, 0), "follower_start.pose.positions", "got all joints in one point in every frame"},
+    {Text("follower_start {}"), "follower_start.start",
+     "expected root_position or pose, got neither"},
+    {Pose(1, 1), "follower_start.pose.positions", "expected 45 values (15 joints x 3), got 1"},
+    {Pose(45, kNan), "follower_start.pose.positions[44]", "expected a finite number, got nan"},
 
-INSTANTIATE_TEST_SUITE_P(
-    Others, RefusalTest,
-    ::testing::Values(
-        Spoiled{"no_chunk_frames", [](Request& r) { r.set_chunk_frames(0); }, "chunk_frames",
-                "expected 1 to 240, got 0"},
-        Spoiled{"huge_chunk_frames", [](Request& r) { r.set_chunk_frames(4294967295U); },
-                "chunk_frames", "expected 1 to 240, got 4294967295"},
-        Spoiled{"unknown_priority",
-                [](Request& r) { r.set_priority(static_cast<v1::Priority>(9)); }, "priority",
-                "or no value, got 9"},
-        Spoiled{"unknown_reply_joint", [](Request& r) { r.add_reply_joint_names("tail"); },
-                "reply_joint_names[0]", "expected one of leader.joint_names, got \"tail\""},
-        Spoiled{"repeated_reply_joint",
-                [](Request& r) {
-                  r.add_reply_joint_names("head");
-                  r.add_reply_joint_names("head");
-                },
-                "reply_joint_names[1]", "got \"head\" again after reply_joint_names[0]"},
-        Spoiled{"too_many_reply_joints",
-                [](Request& r) {
-                  for (int i = 0; i < 16; ++i) r.add_reply_joint_names("head");
-                },
-                "reply_joint_names", "expected at most the 15 names of leader.joint_names, got 16"},
-        Spoiled{"rotations_in_an_unequal_unit",
-                [](Request& r) {
-                  r.set_reply_rotations(true);
-                  r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
-                  r.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
-                },
-                "reply_rotations", "has no rotations, got LENGTH_UNIT_SBU_NORMALISED"},
-        Spoiled{"rotations_of_some_joints",
-                [](Request& r) {
-                  r.set_reply_rotations(true);
-                  r.add_reply_joint_names("head");
-                },
-                "reply_rotations", "expected no reply_joint_names: a rig needs every joint, got 1"},
-        Spoiled{"nan_variety", [](Request& r) { r.set_variety(kNan); }, "variety",
-                "expected a finite value in [0, 2], got nan"},
-        Spoiled{"negative_reaction", [](Request& r) { r.set_reaction(-0.5F); }, "reaction",
-                "expected a finite value in [0, 2], got -0.5"},
-        Spoiled{"no_candidates", [](Request& r) { r.set_candidates(0); }, "candidates",
-                "expected 1 to 16, got 0"},
-        Spoiled{"countless_candidates", [](Request& r) { r.set_candidates(4294967295u); },
-                "candidates", "expected 1 to 16, got 4294967295"},
-        Spoiled{"unknown_clean_up", [](Request& r) { r.set_clean_up(static_cast<v1::CleanUp>(9)); },
-                "clean_up", "expected CLEAN_UP_ON, CLEAN_UP_OFF or no value, got 9"},
-        Spoiled{"no_direction", [](Request& r) { SetDirection(r, 0, 0, 0); }, "partner_direction",
-                "expected a direction that is neither vertical nor of length 0, got (0, 0, 0)"},
-        Spoiled{"nearly_vertical_direction", [](Request& r) { SetDirection(r, 1e-6F, -3, 1e-6F); },
-                "partner_direction", "expected a direction that is neither vertical"},
-        Spoiled{"nan_direction", [](Request& r) { SetDirection(r, kNan, 0, 1); },
-                "partner_direction[0]", "expected a finite number, got nan"},
-        Spoiled{"no_up", [](Request& r) { SetVertical(r, 0, 0, 0); }, "up",
-                "expected a direction of any length but 0, less than 45 degrees from "
-                "UP_AXIS_Y_UP, got (0, 0, 0)"},
-        Spoiled{"far_up", [](Request& r) { SetVertical(r, 0, 1, 1.001F); }, "up",
-                "got (0, 1, 1.001)"},
-        Spoiled{"direction_along_up",
-                [](Request& r) {
-                  SetVertical(r, 0, 2, 1);
-                  SetDirection(r, 0, 4, 2);
-                },
-                "partner_direction", "neither vertical nor of length 0, got (0, 4, 2)"}),
-    SpoiledName);
+    {Text("chunk_frames: 0"), "chunk_frames", "expected 1 to 240, got 0"},
+    {Text("chunk_frames: 4294967295"), "chunk_frames", "expected 1 to 240, got 4294967295"},
+    {[](Request& r) { r.set_priority(static_cast<v1::Priority>(9)); }, "priority",
+     "or no value, got 9"},
+    {Text("reply_joint_names: 'tail'"), "reply_joint_names[0]",
+     "expected one of leader.joint_names, got \"tail\""},
+    {Times(2, "reply_joint_names: 'head'"), "reply_joint_names[1]",
+     "got \"head\" again after reply_joint_names[0]"},
+    {Times(16, "reply_joint_names: 'head'"), "reply_joint_names",
+     "expected at most the 15 names of leader.joint_names, got 16"},
+    {Text(std::string("reply_rotations: true ") + kSbu), "reply_rotations",
+     "has no rotations, got LENGTH_UNIT_SBU_NORMALISED"},
+    {Text("reply_rotations: true reply_joint_names: 'head'"), "reply_rotations",
+     "expected no reply_joint_names: a rig needs every joint, got 1"},
+    {Text("variety: nan"), "variety", "expected a finite value in [0, 2], got nan"},
+    {Text("reaction: -0.5"), "reaction", "expected a finite value in [0, 2], got -0.5"},
+    {Text("candidates: 0"), "candidates", "expected 1 to 16, got 0"},
+    {Text("candidates: 4294967295"), "candidates", "expected 1 to 16, got 4294967295"},
+    {[](Request& r) { r.set_clean_up(static_cast<v1::CleanUp>(9)); }, "clean_up",
+     "expected CLEAN_UP_ON, CLEAN_UP_OFF or no value, got 9"},
+    {Text("partner_direction {}"), "partner_direction",
+     "expected a direction that is neither vertical nor of length 0, got (0, 0, 0)"},
+    {Text("partner_direction { x: 1e-6 y: -3 z: 1e-6 }"), "partner_direction",
+     "expected a direction that is neither vertical"},
+    {Text("partner_direction { x: nan z: 1 }"), "partner_direction[0]",
+     "expected a finite number, got nan"},
+    {Text("up {}"), "up",
+     "expected a direction of any length but 0, less than 45 degrees from UP_AXIS_Y_UP, got (0, "
+     "0, 0)"},
+    {Text("up { y: 1 z: 1.001 }"), "up", "got (0, 1, 1.001)"},
+    {Text("up { y: 2 z: 1 } partner_direction { y: 4 z: 2 }"), "partner_direction",
+     "neither vertical nor of length 0, got (0, 4, 2)"},
+
+    {Text("constraints { joint_name: 'left_wing' position { y: 1 } }"), "constraints[0].joint_name",
+     "a joint of model fake (head, neck, torso, left_shoulder", kFailedPrecondition},
+    {Text("constraints { joint_name: 'head' frame: 40 position { y: 1 } }"), "constraints[0].frame",
+     "expected less than the 40 frames of leader, got 40"},
+    {Text("constraints { joint_name: 'head' }"), "constraints[0].position",
+     "expected a point, got none"},
+    {Text("constraints { joint_name: 'head' position { y: nan } }"), "constraints[0].position",
+     "expected finite numbers, got (0, nan, 0)"},
+    {Text("constraints { joint_name: 'head' position { x: 100 y: 1600 } }"),
+     "constraints[0].position", "at most 20 m from the leader in this frame"},
+    {Text("constraints { joint_name: 'head' position { y: 1 } softness: nan }"),
+     "constraints[0].softness", "expected a finite value in [0, 1], got nan"},
+    {Times(2, "constraints { joint_name: 'head' frame: 3 position { y: 1 } }"), "constraints[1]",
+     "each joint at most once in a frame, got \"head\" in frame 3 again after constraints[0]"},
+    {Times(65, "constraints {}"), "constraints", "expected at most 64, got 65"},
+};
+
+TEST(ValidateRequestTest, ErrorNamesFieldExpectedAndActualValue) {
+  for (const auto& [spoil, field, description, code] : kSpoiled) {
+    SCOPED_TRACE(absl::StrCat(field, ": ", description));
+    Request request = SampleRequest();
+    spoil(request);
+    const Refusal refusal = Decode(Validate(request).status());
+    EXPECT_EQ(refusal.code, code) << refusal.message;
+    EXPECT_THAT(refusal.Fields(), ElementsAre(field)) << "exactly this field";
+    EXPECT_THAT(refusal.Of(field), HasSubstr(description));
+    EXPECT_THAT(refusal.message, HasSubstr(field));
+  }
+}
 
 TEST(ValidateRequestTest, RejectionOfAnEmptyRequestNamesEveryMissingField) {
   const Refusal refusal = Decode(Validate(v1::SynthesizeRequest()).status());
@@ -629,40 +556,6 @@ TEST(ValidateRequestTest, ReadsLabelsInTheModelsClassOrder) {
   validated->clip.labels.At(20, weights.data());
   EXPECT_EQ(weights, (std::vector<float>{1, 0, 0, 0, 0, -0.5F}));
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Constraints, RefusalTest,
-    ::testing::Values(
-        Spoiled{"unknown_joint", [](Request& r) { AddConstraint(r, "left_wing", 3, 0, 1, 0); },
-                "constraints[0].joint_name",
-                "a joint of model fake (head, neck, torso, left_shoulder", kFailedPrecondition},
-        Spoiled{"frame_after_the_end", [](Request& r) { AddConstraint(r, "head", 40, 0, 1, 0); },
-                "constraints[0].frame", "expected less than the 40 frames of leader, got 40"},
-        Spoiled{"no_position", [](Request& r) { r.add_constraints()->set_joint_name("head"); },
-                "constraints[0].position", "expected a point, got none"},
-        Spoiled{"nan_position", [](Request& r) { AddConstraint(r, "head", 3, 0, kNan, 0); },
-                "constraints[0].position", "expected finite numbers, got (0, nan, 0)"},
-        Spoiled{"millimetres_as_metres",
-                [](Request& r) { AddConstraint(r, "head", 3, 100, 1600, 0); },
-                "constraints[0].position", "at most 20 m from the leader in this frame"},
-        Spoiled{"nan_softness",
-                [](Request& r) { AddConstraint(r, "head", 3, 0, 1, 0).set_softness(kNan); },
-                "constraints[0].softness", "expected a value in [0, 1], got nan"},
-        Spoiled{"twice_in_a_frame",
-                [](Request& r) {
-                  AddConstraint(r, "head", 3, 0, 1, 0);
-                  AddConstraint(r, "head", 4, 0, 1, 0);
-                  AddConstraint(r, "head", 3, 0, 2, 0);
-                },
-                "constraints[2]",
-                "each joint at most once in a frame, got \"head\" in frame 3 again after "
-                "constraints[0]"},
-        Spoiled{"too_many",
-                [](Request& r) {
-                  for (int i = 0; i < 65; ++i) r.add_constraints();
-                },
-                "constraints", "expected at most 64, got 65"}),
-    SpoiledName);
 
 TEST(Constraints, ArePinsInTheModelsJointsAndMetres) {
   Request request = SampleRequest();

@@ -1,12 +1,11 @@
-#include "server/service/violations.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "absl/strings/str_cat.h"
-#include "server/common/grpc_status.h"
+#include "server/common/error_details.h"
+#include "server/service/refusals.h"
 #include "tests/server/support/refusal.h"
 #include "tests/support/matchers.h"
 

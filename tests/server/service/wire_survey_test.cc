@@ -143,5 +143,28 @@ TEST(ParseMessageTest, RefusesEveryTruncation) {
   }
 }
 
+absl::Status ErrorOfLiveMessage(const std::string& bytes) {
+  const grpc::Slice slice(bytes);
+  return ParseLiveMessage(grpc::ByteBuffer(&slice, 1)).status();
+}
+
+TEST(ParseLiveMessageTest, ATooLargeMessageIsNotParsed) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+  EXPECT_THAT(ErrorOfLiveMessage(std::string(kMaxBytes, '\0')),
+              StatusIs(absl::StatusCode::kInvalidArgument, ::testing::_));
+  EXPECT_THAT(ErrorOfLiveMessage(std::string(kMaxBytes + 1, '\0')),
+              StatusIs(absl::StatusCode::kResourceExhausted,
+                       HasSubstr("message of a live session: expected at most 1048576 bytes, got "
+                                 "1048577")));
+}
+
+TEST(ParseLiveMessageTest, ManyTinyFieldsAreNotParsed) {
+  // Label changes, each with a vector, each with an empty weight: four bytes that take 150 parsed.
+  std::string bomb;
+  for (int i = 0; i < 100'000; ++i) bomb.append("\x1a\x02\x12\x00", 4);
+  EXPECT_THAT(ErrorOfLiveMessage(bomb),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("label_change")));
+}
+
 }  // namespace
 }  // namespace duet::server::service

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "duet/rpc/v1/status.pb.h"
-#include "server/common/grpc_status.h"
+#include "server/common/error_details.h"
 
 namespace duet::test {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/batching/batcher.h"
+#include "server/batching/window_queue.h"
 #include "server/config/settings.h"
 #include "tests/server/support/timed_context.h"
 
