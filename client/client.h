@@ -2,6 +2,7 @@
 #define DUET_CLIENT_CLIENT_H_
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -39,25 +40,35 @@ class Client {
   explicit Client(std::shared_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
   // Lists every model version that the server serves, by name, newest version first.
-  absl::StatusOr<std::vector<ModelInfo>> ListModels() const;
+  absl::StatusOr<std::vector<ModelInfo>> ListModels() const { return connection_->ListModels(); }
   // Gets one model version and the limits on requests to it.
-  absl::StatusOr<ModelDetails> GetModel(const ModelChoice& choice = {}) const;
+  absl::StatusOr<ModelDetails> GetModel(const ModelChoice& choice = {}) const {
+    return connection_->GetModel(choice);
+  }
   // Blocks until the whole follower has arrived.
-  absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request) const;
+  absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request) const {
+    return connection_->Synthesize(request, nullptr);
+  }
   // Like Synthesize, but also passes each chunk to `on_chunk` when it arrives.
   absl::StatusOr<SynthesisResult> SynthesizeStreaming(const SynthesisRequest& request,
-                                                      const ChunkCallback& on_chunk) const;
+                                                      const ChunkCallback& on_chunk) const {
+    return connection_->Synthesize(request, on_chunk);
+  }
   // Starts a call and returns immediately. For callers that run many calls concurrently and handle
   // failures themselves: makes one attempt, whatever the retry options are.
   //
-  // Calls `done` once, on the connection's own thread. That thread reads all replies of the
-  // connection, so `done` should return quickly. Destroying the last copy of a Client waits for
+  // Calls `done` once, on a thread of gRPC. Few such threads read all replies, so `done` should
+  // return quickly. Destroying the last copy of a Client waits for
   // calls in progress, so `done` must not hold a copy.
-  void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const;
+  void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const {
+    connection_->SynthesizeAsync(std::move(request), done);
+  }
   // Begins a live session, in which the follower answers a leader who still moves
   // (client/live_session.h). Blocks until the server has accepted it.
   absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(const LiveRequest& request,
-                                                         LiveCallbacks callbacks) const;
+                                                         LiveCallbacks callbacks) const {
+    return connection_->StartLive(request, std::move(callbacks));
+  }
 
  private:
   std::shared_ptr<Connection> connection_;

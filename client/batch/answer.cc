@@ -1,7 +1,6 @@
 #include "client/batch/answer.h"
 
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -22,18 +21,6 @@
 namespace duet::client::batch {
 namespace {
 
-// Keyframes with times as fractions of the clip, converted to frames. In a short clip, several can
-// fall on one frame; the last one counts.
-std::vector<WeightKeyframe> ToFrames(const std::vector<TimedLabels>& keyframes, int frame_count) {
-  std::vector<WeightKeyframe> frames;
-  for (const TimedLabels& keyframe : keyframes) {
-    const int frame = static_cast<int>(std::lround(keyframe.at * (frame_count - 1)));
-    if (!frames.empty() && frames.back().frame == frame) frames.pop_back();
-    frames.push_back({frame, keyframe.labels});
-  }
-  return frames;
-}
-
 // The pair as an upright camera would have captured it.
 motion::ClipPair Upright(motion::ClipPair pair, const std::optional<motion::Vec3>& up) {
   if (!up.has_value()) return pair;
@@ -45,32 +32,8 @@ motion::ClipPair Upright(motion::ClipPair pair, const std::optional<motion::Vec3
 }
 
 formats::Format FileFormat(v1::Format format) {
-  switch (format) {
-    case v1::FORMAT_BVH:
-      return formats::Format::kBvh;
-    case v1::FORMAT_GLB:
-      return formats::Format::kGlb;
-    default:
-      return formats::Format::kNpy;
-  }
-}
-
-// The files omit labels and model, which are in the index.
-absl::Status AddFiles(v1::Format format, const motion::ClipPair& pair,
-                      const motion::Skeleton& skeleton, std::vector<EncodedFile>* all) {
-  const std::vector<std::string> endings = EndingsOf(format);
-  const bool together = endings.size() == 1;
-  for (size_t i = 0; i < endings.size(); ++i) {
-    const motion::Clip& person = i == 0 ? pair.leader : pair.follower;
-    absl::StatusOr<std::string> content =
-        formats::FormatPeople(FileFormat(format),
-                              together ? std::vector<motion::Clip>{pair.leader, pair.follower}
-                                       : std::vector<motion::Clip>{person},
-                              skeleton);
-    if (!content.ok()) return content.status();
-    all->push_back({endings[i], *std::move(content)});
-  }
-  return absl::OkStatus();
+  if (format == v1::FORMAT_BVH) return formats::Format::kBvh;
+  return format == v1::FORMAT_GLB ? formats::Format::kGlb : formats::Format::kNpy;
 }
 
 motion::Clip AtRate(motion::Clip clip, double rate_hz) {
@@ -106,10 +69,6 @@ flow::CallEnd CallEndOf(const absl::Status& status) {
                                                          : flow::CallEnd::kRefused;
 }
 
-std::string RequestId(const Item& item, int retry) {
-  return absl::StrCat("batch-", item.id, retry == 0 ? "" : absl::StrCat("-", retry));
-}
-
 SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelInfo& model,
                            const LoadedLeader& leader, int retry) {
   SynthesisRequest request;
@@ -117,7 +76,6 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   request.model.version = model.version;
   request.leader = leader.clip;
   request.weights = item.labels;
-  request.keyframes = ToFrames(item.keyframes, leader.clip.frame_count());
   request.follower_start = leader.follower_start;
   request.partner_direction = item.leader->partner_direction;
   request.up = recipe.input.up;
@@ -125,30 +83,13 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   request.variety = recipe.variety;
   request.candidates = recipe.candidates;
   request.priority = Priority::kBulk;
-  request.request_id = RequestId(item, retry);
+  request.request_id = absl::StrCat("batch-", item.id, retry == 0 ? "" : absl::StrCat("-", retry));
   return request;
 }
 
-RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const SynthesisResult& result,
-                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
-  RecordedAnswer answer;
-  answer.leader_sha256 = leader.sha256;
-  answer.model = absl::StrCat(result.model_name, "@", result.model_version);
-  answer.seed = result.seed;
-  answer.variety = result.variety;
-  answer.candidates = result.candidates;
-  answer.request_id = result.request_id;
-  answer.keyframes = ToFrames(item.keyframes, result.pair.leader.frame_count());
-  answer.frames = result.pair.follower.frame_count();
-  answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
-  answer.quality = Measure(Upright(result.pair, recipe.input.up), skeleton, result);
-  answer.answers = retry + 1;
-  answer.made_by = MadeByOf(result);
-  return answer;
-}
-
-Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
-                const SynthesisResult& result) {
+Quality Measure(const SynthesisResult& result, const motion::Skeleton& skeleton,
+                const std::optional<motion::Vec3>& up) {
+  const motion::ClipPair pair = Upright(result.pair, up);
   const motion::Poses& leader = pair.leader.poses;
   const motion::Poses& follower = pair.follower.poses;
   Quality quality;
@@ -205,14 +146,8 @@ std::vector<std::string> WhyRejected(const v1::QualityFilter& filter, const Qual
 }
 
 std::vector<std::string> EndingsOf(v1::Format format) {
-  switch (format) {
-    case v1::FORMAT_BVH:
-      return {".leader.bvh", ".follower.bvh"};
-    case v1::FORMAT_GLB:
-      return {".glb"};
-    default:
-      return {".npy"};
-  }
+  if (format == v1::FORMAT_BVH) return {".leader.bvh", ".follower.bvh"};
+  return {format == v1::FORMAT_GLB ? ".glb" : ".npy"};
 }
 
 motion::ClipPair AtOutputRate(motion::ClipPair pair, const v1::Output& output) {
@@ -227,9 +162,19 @@ absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output,
   absl::Status status = CheckPair(pair);
   if (!status.ok()) return status;
   std::vector<EncodedFile> all;
-  for (const int format : output.formats()) {
-    status = AddFiles(static_cast<v1::Format>(format), pair, skeleton, &all);
-    if (!status.ok()) return status;
+  for (const int number : output.formats()) {
+    const auto format = static_cast<v1::Format>(number);
+    std::vector<motion::Clip> people = {pair.leader, pair.follower};
+    for (const std::string& ending : EndingsOf(format)) {
+      const bool together = format != v1::FORMAT_BVH;
+      // Labels and model are in the index.
+      absl::StatusOr<std::string> content = formats::FormatPeople(
+          FileFormat(format), together ? people : std::vector<motion::Clip>{people.front()},
+          skeleton);
+      if (!content.ok()) return content.status();
+      all.push_back({ending, *std::move(content)});
+      people.erase(people.begin());
+    }
   }
   return all;
 }

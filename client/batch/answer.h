@@ -1,6 +1,8 @@
 #ifndef DUET_CLIENT_BATCH_ANSWER_H_
 #define DUET_CLIENT_BATCH_ANSWER_H_
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +11,6 @@
 #include "client/batch/flow/call_gate.h"
 #include "client/batch/leaders.h"
 #include "client/batch/plan.h"
-#include "client/batch/record.h"
 #include "client/request.h"
 #include "client/result.h"
 #include "model/motion/clip.h"
@@ -28,22 +29,22 @@ enum class Meaning {
 Meaning MeaningOf(const absl::Status& status);
 flow::CallEnd CallEndOf(const absl::Status& status);
 
-// The request of an item. `retry` selects the seed; 0 is the first.
+// The request of an item. `retry` selects the seed; 0 is the first. Its id is the same in every
+// call for the item.
 SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelInfo& model,
                            const LoadedLeader& leader, int retry);
 
-// The request id, which is the same in every call for the item.
-std::string RequestId(const Item& item, int retry);
+// Quality of an answer: the figures of QualityFigures of proto/duet/batch/v1/batch.proto by their
+// names there. Figures are absent if the skeleton does not have their joints.
+struct Quality {
+  std::map<std::string, double> figures;
+  std::optional<double> unfamiliarity;  // IndexEntry.unfamiliarity
+};
 
-// The index entry of an answer. Its pair has the rate of the output. Quality is measured in the
-// level world.
-RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const SynthesisResult& result,
-                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry);
-
-// `pair`: of the result, level and at any rate. Requires at least one frame and the joints of the
-// skeleton.
-Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
-                const SynthesisResult& result);
+// The quality of the result's pair, which has at least one frame and the joints of the skeleton. It
+// is measured in the level world: `up` is the vertical of the leaders.
+Quality Measure(const SynthesisResult& result, const motion::Skeleton& skeleton,
+                const std::optional<motion::Vec3>& up);
 
 // The limits that an answer exceeds, one text for each; empty if it passes.
 std::vector<std::string> WhyRejected(const v1::QualityFilter& filter, const Quality& quality);

@@ -17,20 +17,14 @@ namespace duet::client::batch {
 // Errors: ABORTED with the path and the system's message: the same run may succeed later, for
 // example when the disk has space again.
 
-// Writes `temporary`, flushes it to disk and renames it to its place; creates folders as needed.
-// Both paths are on the same file system.
-absl::Status WriteDurably(const std::filesystem::path& temporary, const std::filesystem::path& path,
-                          absl::string_view content);
-// Renames a file, and creates folders as needed. SyncFileSystem or SyncFolder make it durable.
+// Renames a file, and creates folders as needed. SyncFileSystem makes it durable.
 absl::Status RenameInto(const std::string& from, const std::string& to);
 // Flushes everything on the file system of a folder to disk.
 absl::Status SyncFileSystem(const std::filesystem::path& folder);
-// Flushes a folder's names to disk.
-absl::Status SyncFolder(const std::filesystem::path& folder);
 
 // Many files that reach the disk together, because a flush costs as much as several of them: each
-// is written under a temporary name, all are flushed, then renamed. Files that were not committed
-// when the process ends are discarded.
+// is written under a temporary name, all are flushed, then renamed in their order. Files that were
+// not committed when the process ends are discarded.
 class FileGroup {
  public:
   // Paths of files are relative to `out`, which is on the file system of `temporary`.
@@ -41,6 +35,8 @@ class FileGroup {
   ~FileGroup();
 
   absl::Status Add(const std::string& path, absl::string_view content);
+  // Adds a file whose content the caller writes, before Commit, under the returned temporary name.
+  std::string Begin(const std::string& path);
   // When it returns, the added files are on disk under their names.
   absl::Status Commit();
 
@@ -52,30 +48,6 @@ class FileGroup {
   const std::string out_;
   std::vector<Pending> pending_;
   int64_t count_ = 0;
-};
-
-// A file that is written piece by piece and then given its place. Removes `temporary` if it is not
-// finished.
-class DurableFile {
- public:
-  explicit DurableFile(std::filesystem::path temporary) : temporary_(std::move(temporary)) {}
-  DurableFile(const DurableFile&) = delete;
-  DurableFile& operator=(const DurableFile&) = delete;
-  ~DurableFile();
-
-  // Replaces the temporary file. Call once, first.
-  absl::Status Open();
-  absl::Status Append(absl::string_view content);
-  // When it returns, the file is on disk at `path`.
-  absl::Status Finish(const std::filesystem::path& path);
-
- private:
-  absl::Status Flush();
-
-  std::filesystem::path temporary_;
-  std::string buffer_;
-  int descriptor_ = -1;
-  bool finished_ = false;
 };
 
 // Writes all of `content` to an open file; errors name `path`.

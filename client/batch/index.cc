@@ -1,6 +1,8 @@
 #include "client/batch/index.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -86,50 +88,62 @@ ordered_json FilesJson(v1::Format format) {
   return files;
 }
 
-constexpr char kDoneFile[] = "index.jsonl", kRejectedFile[] = "rejected.jsonl",
-               kFailedFile[] = "failed.jsonl";
-
 class IndexWriter {
  public:
   explicit IndexWriter(const JobFolder& folder)
-      : folder_(folder),
-        done_(folder.temporary() / kDoneFile),
-        rejected_(folder.temporary() / kRejectedFile),
-        failed_(folder.temporary() / kFailedFile) {}
-
-  absl::Status Open() {
-    absl::Status status = done_.Open();
-    status.Update(rejected_.Open());
-    status.Update(failed_.Open());
-    return status;
-  }
+      : files_(folder.temporary(), folder.out()),
+        rejected_(files_, "rejected.jsonl"),
+        failed_(files_, "failed.jsonl"),
+        done_(files_, "index.jsonl") {}
 
   absl::Status Add(const std::string& text) {
     const absl::StatusOr<v1::IndexEntry> record = ParseRecord(text);
     if (!record.ok()) return record.status();
     if (record->state() == kDone) {
       CountDone(*record);
-      return done_.Append(text + "\n");
+      return done_.Append(text);
     }
     if (record->state() == kRejected) {
       ++counts_.rejected;
-      return rejected_.Append(text + "\n");
+      return rejected_.Append(text);
     }
     if (counts_.failed++ == 0) counts_.first_failure = record->error().message();
     failed_leaders_.insert(record->leader());
-    return failed_.Append(text + "\n");
+    return failed_.Append(text);
   }
 
-  absl::StatusOr<SetCounts> Finish() {
-    absl::Status status = rejected_.Finish(folder_.out() / kRejectedFile);
-    status.Update(failed_.Finish(folder_.out() / kFailedFile));
-    status.Update(done_.Finish(folder_.out() / kDoneFile));
-    if (!status.ok()) return status;
+  absl::StatusOr<SetCounts> Finish(const SetSource& source, int64_t planned) {
+    absl::Status status = rejected_.Close();
+    status.Update(failed_.Close());
+    status.Update(done_.Close());
     counts_.failed_leaders = static_cast<int64_t>(failed_leaders_.size());
+    // Last: it describes the others.
+    if (status.ok()) status = files_.Add("dataset.json", DatasetJson(source, counts_, planned));
+    if (status.ok()) status = files_.Commit();
+    if (!status.ok()) return status;
     return std::move(counts_);
   }
 
  private:
+  // Lines of a file that may be larger than memory.
+  class Lines {
+   public:
+    Lines(FileGroup& files, const char* name)
+        : path_(files.Begin(name)), out_(path_, std::ios::binary) {}
+    absl::Status Append(const std::string& line) {
+      out_ << line << '\n';
+      return out_.good() ? absl::OkStatus() : CannotWrite(path_, errno);
+    }
+    absl::Status Close() {
+      out_.close();
+      return out_.good() ? absl::OkStatus() : CannotWrite(path_, errno);
+    }
+
+   private:
+    std::string path_;
+    std::ofstream out_;
+  };
+
   void CountDone(const v1::IndexEntry& record) {
     ++counts_.done;
     counts_.frames += record.frames();
@@ -139,8 +153,8 @@ class IndexWriter {
     }
   }
 
-  const JobFolder& folder_;
-  DurableFile done_, rejected_, failed_;
+  FileGroup files_;
+  Lines rejected_, failed_, done_;
   std::set<std::string> failed_leaders_;
   SetCounts counts_;
 };
@@ -191,19 +205,10 @@ std::string DatasetJson(const SetSource& source, const SetCounts& counts, int64_
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const SetSource& source,
                                      int64_t planned, const JobFolder& folder) {
   IndexWriter writer(folder);
-  absl::Status status = writer.Open();
-  if (status.ok()) {
-    status =
-        journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry.record); });
-  }
+  absl::Status status =
+      journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry.record); });
   if (!status.ok()) return status;
-  absl::StatusOr<SetCounts> counts = writer.Finish();
-  if (!counts.ok()) return counts;
-  // Last: it describes the others.
-  status = WriteDurably(folder.temporary() / "dataset.json", folder.out() / "dataset.json",
-                        DatasetJson(source, *counts, planned));
-  if (!status.ok()) return status;
-  return counts;
+  return writer.Finish(source, planned);
 }
 
 }  // namespace duet::client::batch

@@ -30,11 +30,11 @@ struct SetCounts {
   std::map<std::string, MadeBy> made_by;    // the first item of each model, "name@version"
 };
 
-// What the items of a set were made with. `models` and `skeletons` are those of the plan.
+// What the items of a set are made with: the recipe, its models in its order, and their joints.
 struct SetSource {
-  const Recipe& recipe;
-  const std::vector<ModelInfo>& models;
-  const std::vector<motion::Skeleton>& skeletons;
+  Recipe recipe;
+  std::vector<ModelInfo> models;
+  std::vector<motion::Skeleton> skeletons;
 };
 
 // The index of each model's skeleton in dataset.json. Equal skeletons have the same index.

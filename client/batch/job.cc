@@ -6,8 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/error_details.h"
-#include "model/base/sha256.h"
-#include "nlohmann/json.hpp"
 
 namespace duet::client::batch {
 namespace {
@@ -62,13 +60,6 @@ Progress Job::progress() const {
   return {planned_, resumed_, done_, rejected_, failed_, unfinished_, gate_.state()};
 }
 
-// Returns false after a stop.
-bool Job::Put(Item item) {
-  std::shared_ptr<SharedLeader> leader =
-      leaders_.Get(item.leader, item.side, skeleton_indices_[static_cast<size_t>(item.model)]);
-  return queue_.Put({std::move(item), std::move(leader)});
-}
-
 absl::Status Job::Feed() {
   while (planned_ < parts_.planned) {
     absl::StatusOr<std::optional<Item>> item = plan_.Next();
@@ -80,9 +71,12 @@ absl::Status Job::Feed() {
     ++planned_;
     if (parts_.survey->IsSettled((*item)->number)) {
       ++resumed_;
-    } else if (!Put(**std::move(item))) {
-      return absl::OkStatus();
+      continue;
     }
+    std::shared_ptr<SharedLeader> leader = leaders_.Get(
+        (*item)->leader, (*item)->side, skeleton_indices_[static_cast<size_t>((*item)->model)]);
+    const bool stopped = !queue_.Put({**std::move(item), std::move(leader)});
+    if (stopped) return absl::OkStatus();
   }
   return absl::OkStatus();
 }
@@ -99,7 +93,7 @@ void Job::Ask(Work work) {
     Fail(work.item, leader.status());
     return queue_.Done();
   }
-  const absl::Status unchanged = parts_.survey->leaders().Check(*work.item.leader, leader->sha256);
+  const absl::Status unchanged = parts_.survey->CheckLeader(*work.item.leader, leader->sha256);
   if (!unchanged.ok()) {
     StopWith(unchanged);
     return queue_.Done();
@@ -119,16 +113,10 @@ void Job::Ask(Work work) {
 }
 
 void Job::KeepUntilClosed() {
-  while (std::optional<Answered> answered = answers_.Take()) Receive(*std::move(answered));
-}
-
-// All answers of a set are made in the same way, whichever server of a name answers.
-absl::Status Job::CheckMaker(const SynthesisResult& result) const {
-  const std::string model = absl::StrCat(result.model_name, "@", result.model_version);
-  const absl::Status same = parts_.survey->makers().Check(model, MadeByOf(result));
-  if (same.ok()) return same;
-  return absl::FailedPreconditionError(
-      absl::StrCat(same.message(), ". Use servers that are set up alike, or choose another --out"));
+  while (std::optional<Answered> answered = answers_.Take()) {
+    Receive(*std::move(answered));
+    answers_.Done();
+  }
 }
 
 // Finishes the item, or puts it back for another attempt.
@@ -137,7 +125,9 @@ void Job::Receive(Answered answered) {
   Work& work = answered.work;
   switch (MeaningOf(status)) {
     case Meaning::kAnswer:
-      if (const absl::Status same = CheckMaker(*answered.result); !same.ok()) {
+      if (const absl::Status same =
+              parts_.survey->CheckMaker(ModelText(*answered.result), MadeByOf(*answered.result));
+          !same.ok()) {
         StopWith(same);
         break;
       }
@@ -163,13 +153,12 @@ void Job::Judge(Work work, const SynthesisResult& result) {
   const auto model = static_cast<size_t>(work.item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
   const v1::QualityFilter& filter = parts_.recipe.filter;
-  const absl::StatusOr<LoadedLeader>& leader = work.leader->Get(parts_.recipe.input, skeleton);
-  RecordedAnswer answer =
-      ToRecorded(work.item, parts_.recipe, result, *leader, skeleton, work.retry);
-  answer.skeleton = skeleton_indices_[model];
+  const Answer answer{result, *work.leader->Get(parts_.recipe.input, skeleton),
+                      Measure(result, skeleton, parts_.recipe.input.up), skeleton_indices_[model],
+                      work.retry};
   const std::vector<std::string> reasons = WhyRejected(filter, answer.quality);
   if (reasons.empty()) {
-    Keep(work.item, answer, result.pair);
+    Keep(work.item, answer);
   } else if (parts_.models[model].samples &&
              work.retry < static_cast<int>(filter.retries_per_item())) {
     ++work.retry;
@@ -180,16 +169,12 @@ void Job::Judge(Work work, const SynthesisResult& result) {
   queue_.Done();
 }
 
-void Job::Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair) {
+void Job::Keep(const Item& item, const Answer& answer) {
   const motion::Skeleton& skeleton = parts_.skeletons[static_cast<size_t>(item.model)];
-  absl::StatusOr<std::vector<EncodedFile>> encoded = Encode(parts_.recipe.output, pair, skeleton);
+  absl::StatusOr<std::vector<EncodedFile>> encoded =
+      Encode(parts_.recipe.output, answer.result.pair, skeleton);
   if (!encoded.ok()) return Fail(item, encoded.status());
-  std::vector<RecordedFile> recorded;
-  for (const EncodedFile& file : *encoded) {
-    recorded.push_back(
-        {item.name + file.ending, file.content.size(), base::Sha256Hex(file.content)});
-  }
-  Settle({item, kDone, Line(DoneRecord(item, answer, recorded)), *std::move(encoded)});
+  Settle({item, kDone, Line(DoneRecord(item, answer, *encoded)), *std::move(encoded)});
 }
 
 void Job::Fail(const Item& item, const absl::Status& error) {
@@ -231,12 +216,10 @@ absl::Status Job::Write(const std::vector<Settled>& all, FileGroup* files, Journ
   absl::Status status = files->Commit();
   if (status.ok()) status = journal->Commit();
   if (!status.ok()) return status;
-  for (const Settled& settled : all) Count(settled);
+  for (const Settled& settled : all) {
+    ++(settled.state == kDone ? done_ : settled.state == kFailed ? failed_ : rejected_);
+  }
   return absl::OkStatus();
-}
-
-void Job::Count(const Settled& settled) {
-  ++(settled.state == kDone ? done_ : settled.state == kFailed ? failed_ : rejected_);
 }
 
 absl::Status Job::RunThreads(JournalWriter* writer) {
@@ -266,8 +249,7 @@ absl::StatusOr<JobReport> Job::Finish() {
   report.planned = std::max<int64_t>(parts_.planned, journal->count());
   report.unfinished = unfinished_;
   report.first_unfinished = first_unfinished_;
-  absl::StatusOr<SetCounts> counts = WriteIndex(
-      *journal, {parts_.recipe, parts_.models, parts_.skeletons}, report.planned, *parts_.folder);
+  absl::StatusOr<SetCounts> counts = WriteIndex(*journal, parts_, report.planned, *parts_.folder);
   if (!counts.ok()) return counts.status();
   report.set = *std::move(counts);
   return report;

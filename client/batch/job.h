@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,14 +65,11 @@ struct JobReport {
 // writes the same files.
 class Job {
  public:
-  // `client` does not retry. `models` and `skeletons` are those of the
-  // plan. `folder` is open and was begun with the recipe. `survey` covers the same part of the plan
-  // and the same folder; `planned` comes from the check of that part.
-  struct Parts {
-    Recipe recipe;
+  // The source is that of the plan. `client` does not retry. `folder` is open and was begun with
+  // the recipe. `survey` covers the same part of the plan and the same folder; `planned` comes from
+  // the check of that part.
+  struct Parts : SetSource {
     Shard shard;
-    std::vector<ModelInfo> models;
-    std::vector<motion::Skeleton> skeletons;
     Client client;
     const JobFolder* folder = nullptr;
     Survey* survey = nullptr;
@@ -109,20 +105,17 @@ class Job {
   };
 
   absl::Status Feed();
-  bool Put(Item item);
   void AskUntilDone();
   void Ask(Work work);
   void KeepUntilClosed();
-  absl::Status CheckMaker(const SynthesisResult& result) const;
   void Receive(Answered answered);
   void Judge(Work work, const SynthesisResult& result);
-  void Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair);
+  void Keep(const Item& item, const Answer& answer);
   void Fail(const Item& item, const absl::Status& error);
   void FailForNow(const Item& item, const absl::Status& error);
   void Settle(Settled settled);
   void WriteUntilClosed(JournalWriter* journal);
   absl::Status Write(const std::vector<Settled>& all, FileGroup* files, JournalWriter* journal);
-  void Count(const Settled& settled);
   absl::Status RunThreads(JournalWriter* writer);
   absl::StatusOr<JobReport> Finish();
   void StopWith(const absl::Status& status);
@@ -131,9 +124,9 @@ class Job {
   Plan plan_;
   JobOptions options_;
   flow::CallGate gate_;
-  flow::WorkQueue<Work> queue_;
-  flow::BoundedQueue<Answered> answers_;
-  flow::BoundedQueue<Settled> settled_;  // by bytes
+  flow::Queue<Work> queue_;
+  flow::Queue<Answered> answers_;
+  flow::Queue<Settled> settled_;  // by bytes
 
   const std::vector<int> skeleton_indices_;  // of dataset.json, by model
   LastLeaders leaders_;                      // used only by Feed

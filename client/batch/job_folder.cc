@@ -1,5 +1,7 @@
 #include "client/batch/job_folder.h"
 
+#include <google/protobuf/util/message_differencer.h>
+
 #include <algorithm>
 #include <system_error>
 #include <utility>
@@ -10,63 +12,34 @@
 #include "client/batch/record.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
-#include "model/base/strict_json.h"
-#include "nlohmann/json.hpp"
+#include "model/messages/message_text.h"
 
 namespace duet::client::batch {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int64_t kFormat = 2;
+constexpr uint32_t kFormat = 2;
 constexpr size_t kMaxIdentityBytes = size_t{16} << 20;
-constexpr size_t kMaxRecipeBytes = size_t{8} << 20;
-constexpr size_t kMaxModels = 1000;
+constexpr char kIdentityFile[] = ".duet-batch/job.json";
 
 std::string ShardText(const Shard& shard) { return absl::StrCat(shard.index, "/", shard.count); }
 
-std::string ToJson(const JobIdentity& identity) {
-  nlohmann::ordered_json models = nlohmann::ordered_json::array();
-  for (const JobIdentity::Model& model : identity.models) {
-    models.push_back({{"name", ModelText(model.choice)}, {"weights_sha256", model.weights_sha256}});
-  }
-  nlohmann::ordered_json object = {{"format", kFormat},
-                                   {"recipe_sha256", identity.recipe_digest},
-                                   {"recipe", identity.recipe_json},
-                                   {"shard", ShardText(identity.shard)},
-                                   {"models", models}};
-  return object.dump(2) + "\n";
-}
-
-JobIdentity::Model ReadModel(const nlohmann::json& json, base::ObjectReader* parent) {
-  base::ObjectReader reader(json, "models");
-  const absl::StatusOr<ModelChoice> choice = ParseModelChoice(reader.String("name", 1000));
-  reader.Update(choice.status());
-  JobIdentity::Model model{choice.value_or(ModelChoice()), reader.String("weights_sha256", 64)};
-  parent->Update(reader.Finish());
-  return model;
-}
-
-absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
-  const absl::StatusOr<nlohmann::json> object = base::ParseStrictJson(text, 6);
-  if (!object.ok()) return object.status();
-  base::ObjectReader reader(*object, "");
-  JobIdentity identity;
-  reader.Int("format", kFormat, kFormat);
-  identity.recipe_digest = reader.String("recipe_sha256", 64);
-  identity.recipe_json = reader.String("recipe", kMaxRecipeBytes);
-  const absl::StatusOr<Shard> shard = ParseShard(reader.String("shard", 32));
-  reader.Update(shard.status());
-  if (shard.ok()) identity.shard = *shard;
-  for (const nlohmann::json& model : reader.Array("models", kMaxModels)) {
-    identity.models.push_back(ReadModel(model, &reader));
-  }
-  absl::Status status = reader.Finish();
+absl::StatusOr<v1::Job> FromJson(const std::string& text) {
+  v1::Job job;
+  absl::Status status = messages::ParseMessage(text, messages::MessageSyntax::kJson, &job);
   if (!status.ok()) return status;
-  return identity;
+  if (job.format() != kFormat) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("format: expected ", kFormat, ", got ", job.format()));
+  }
+  status = ParseShard(job.shard()).status();
+  for (const v1::Job::Model& model : job.models()) {
+    status.Update(ParseModelChoice(model.name()).status());
+  }
+  if (!status.ok()) return status;
+  return job;
 }
-
-fs::path IdentityFile(const fs::path& out) { return out / ".duet-batch" / "job.json"; }
 
 absl::Status Refuse(const fs::path& out, const std::string& begun_with) {
   return absl::FailedPreconditionError(absl::StrCat(out.string(), ": was begun with ", begun_with,
@@ -78,20 +51,17 @@ std::vector<fs::path> ShardFolders(const fs::path& out) {
   std::error_code error;
   for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
     const bool named = absl::StartsWith(it->path().filename().string(), "shard-");
-    if (named && ReadJobIdentity(it->path()).ok()) folders.push_back(it->path());
+    if (named && ReadJob(it->path()).ok()) folders.push_back(it->path());
   }
   std::sort(folders.begin(), folders.end());
   return folders;
 }
 
-absl::Status CheckSameJob(const fs::path& shard, const JobIdentity& first,
-                          const JobIdentity& other) {
-  const bool same_models = std::equal(
-      first.models.begin(), first.models.end(), other.models.begin(), other.models.end(),
-      [](const JobIdentity::Model& a, const JobIdentity::Model& b) {
-        return ModelText(a.choice) == ModelText(b.choice) && a.weights_sha256 == b.weights_sha256;
-      });
-  if (same_models) return absl::OkStatus();
+absl::Status CheckSameModels(const fs::path& shard, const v1::Job& first, const v1::Job& other) {
+  const bool same =
+      std::equal(first.models().begin(), first.models().end(), other.models().begin(),
+                 other.models().end(), google::protobuf::util::MessageDifferencer::Equals);
+  if (same) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrCat(
       shard.string(), ": expected the models and weights of the other items, got others"));
 }
@@ -129,45 +99,47 @@ absl::Status Take(const JobFolder& shard, const JobFolder& folder, int64_t* item
 
 }  // namespace
 
-JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard,
-                       const std::vector<ModelInfo>& models) {
-  JobIdentity identity{recipe.digest, recipe.json, shard, {}};
+v1::Job IdentityOf(const Recipe& recipe, const Shard& shard, const std::vector<ModelInfo>& models) {
+  v1::Job job;
+  job.set_format(kFormat);
+  job.set_recipe_sha256(recipe.digest);
+  job.set_recipe(recipe.json);
+  job.set_shard(ShardText(shard));
   for (const ModelInfo& model : models) {
-    ModelChoice choice;
-    choice.name = model.name;
-    choice.version = model.version;
-    identity.models.push_back({std::move(choice), model.weights_sha256});
+    v1::Job::Model* out = job.add_models();
+    out->set_name(absl::StrCat(model.name, "@", model.version));
+    out->set_weights_sha256(model.weights_sha256);
   }
-  return identity;
+  return job;
 }
 
-absl::Status CheckWeights(const JobIdentity& begun, const JobIdentity& now) {
-  for (size_t i = 0; i < std::min(begun.models.size(), now.models.size()); ++i) {
-    const std::string& before = begun.models[i].weights_sha256;
-    const std::string& after = now.models[i].weights_sha256;
+absl::Status CheckWeights(const v1::Job& begun, const v1::Job& now) {
+  for (int i = 0; i < std::min(begun.models_size(), now.models_size()); ++i) {
+    const std::string& before = begun.models(i).weights_sha256();
+    const std::string& after = now.models(i).weights_sha256();
     // Without digests, the weights cannot be compared.
     if (before == after || before.empty() || after.empty()) continue;
     return absl::FailedPreconditionError(
-        absl::StrCat("model ", ModelText(now.models[i].choice),
+        absl::StrCat("model ", now.models(i).name(),
                      ": expected the weights that the set was begun ", "with (SHA-256 ", before,
                      "), got ", after, ". Serve those weights again, or choose another --out."));
   }
   return absl::OkStatus();
 }
 
-absl::StatusOr<JobIdentity> ReadJobIdentity(const fs::path& out) {
-  const fs::path file = IdentityFile(out);
+absl::StatusOr<v1::Job> ReadJob(const fs::path& out) {
+  const fs::path file = out / kIdentityFile;
   const absl::StatusOr<std::string> text = base::ReadFile(file, kMaxIdentityBytes, "a job");
   if (!text.ok()) return text.status();
-  absl::StatusOr<JobIdentity> identity = FromJson(*text);
-  if (identity.ok()) return identity;
+  absl::StatusOr<v1::Job> job = FromJson(*text);
+  if (job.ok()) return job;
   return absl::FailedPreconditionError(absl::StrCat(
-      file.string(), ": is damaged: ", identity.status().message(),
+      file.string(), ": is damaged: ", job.status().message(),
       ". To go on, restore it, or delete it and run the command that made the set again: items "
       "that are done are kept, if recipe, leaders and models are the same"));
 }
 
-absl::Status JobFolder::Open(const JobIdentity& wanted, JobIdentity* begun) {
+absl::Status JobFolder::Open(const v1::Job& wanted, v1::Job* begun) {
   std::error_code error;
   fs::create_directories(state(), error);
   if (error) return CannotWrite(state(), error.value());
@@ -176,26 +148,22 @@ absl::Status JobFolder::Open(const JobIdentity& wanted, JobIdentity* begun) {
   fs::remove_all(temporary(), error);
   fs::create_directory(temporary(), error);
   if (error) return CannotWrite(temporary(), error.value());
-  return Compare(wanted, begun);
-}
-
-absl::Status JobFolder::Compare(const JobIdentity& wanted, JobIdentity* begun) const {
-  std::error_code error;
-  if (!fs::exists(IdentityFile(out_), error)) return absl::OkStatus();
-  absl::StatusOr<JobIdentity> identity = ReadJobIdentity(out_);
-  if (!identity.ok()) return identity.status();
-  *begun = *std::move(identity);
-  if (begun->recipe_digest != wanted.recipe_digest) {
-    const std::string difference = DescribeDifference(begun->recipe_json, wanted.recipe_json);
+  if (!fs::exists(out_ / kIdentityFile, error)) return absl::OkStatus();
+  absl::StatusOr<v1::Job> job = ReadJob(out_);
+  if (!job.ok()) return job.status();
+  *begun = *std::move(job);
+  if (begun->recipe_sha256() != wanted.recipe_sha256()) {
+    const std::string difference = DescribeDifference(begun->recipe(), wanted.recipe());
     return Refuse(out_, difference.empty() ? "another recipe" : "another recipe: " + difference);
   }
-  const bool same_shard =
-      begun->shard.index == wanted.shard.index && begun->shard.count == wanted.shard.count;
-  return same_shard ? absl::OkStatus() : Refuse(out_, "--shard " + ShardText(begun->shard));
+  return begun->shard() == wanted.shard() ? absl::OkStatus()
+                                          : Refuse(out_, "--shard " + begun->shard());
 }
 
-absl::Status JobFolder::Begin(const JobIdentity& identity) const {
-  return WriteDurably(temporary() / "job.json", IdentityFile(out_), ToJson(identity));
+absl::Status JobFolder::Begin(const v1::Job& job) const {
+  FileGroup file(temporary(), out_);
+  absl::Status status = file.Add(kIdentityFile, ToJson(job, /*add_whitespace=*/true));
+  return status.ok() ? file.Commit() : status;
 }
 
 fs::path ShardFolder(const fs::path& out, const Shard& shard) {
@@ -203,23 +171,23 @@ fs::path ShardFolder(const fs::path& out, const Shard& shard) {
   return out / absl::StrCat("shard-", shard.index, "-of-", shard.count);
 }
 
-absl::StatusOr<Gathered> GatherShards(const JobIdentity& wanted, const JobFolder& folder,
-                                      JobIdentity* begun) {
+absl::StatusOr<Gathered> GatherShards(const v1::Job& wanted, const JobFolder& folder,
+                                      v1::Job* begun) {
   Gathered gathered;
   for (const fs::path& path : ShardFolders(folder.out())) {
-    const absl::StatusOr<JobIdentity> identity = ReadJobIdentity(path);
-    if (!identity.ok()) return identity.status();
-    JobIdentity wanted_shard = wanted, begun_shard;
-    wanted_shard.shard = identity->shard;
+    const absl::StatusOr<v1::Job> job = ReadJob(path);
+    if (!job.ok()) return job.status();
+    v1::Job wanted_shard = wanted, begun_shard;
+    wanted_shard.set_shard(job->shard());
     JobFolder shard(path);
     absl::Status status = shard.Open(wanted_shard, &begun_shard);
     if (!status.ok()) return status;
-    begun_shard.shard = wanted.shard;
-    if (begun->models.empty()) {
+    begun_shard.set_shard(wanted.shard());
+    if (begun->models().empty()) {
       *begun = begun_shard;
       status = folder.Begin(*begun);
     } else {
-      status = CheckSameJob(path, *begun, begun_shard);
+      status = CheckSameModels(path, *begun, begun_shard);
     }
     if (status.ok()) status = Take(shard, folder, &gathered.items);
     if (!status.ok()) return status;
@@ -230,7 +198,7 @@ absl::StatusOr<Gathered> GatherShards(const JobIdentity& wanted, const JobFolder
     if (error) return CannotWrite(path, error.value());
     fs::remove_all(unneeded, error);
     ++gathered.shards;
-    gathered.count = identity->shard.count;
+    gathered.count = ParseShard(job->shard())->count;
   }
   return gathered;
 }

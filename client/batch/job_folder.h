@@ -15,24 +15,12 @@
 
 namespace duet::client::batch {
 
-// What a data set is begun with. Every run that adds to it must have the same.
-struct JobIdentity {
-  struct Model {
-    ModelChoice choice;  // name and version
-    std::string weights_sha256;
-  };
-  std::string recipe_digest;
-  std::string recipe_json;  // Recipe::json
-  Shard shard;
-  std::vector<Model> models;  // empty before a job has begun
-};
-
 // The identity of a job of this recipe, with the models that a server serves; none: not known yet.
-JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard,
-                       const std::vector<ModelInfo>& models = {});
+v1::Job IdentityOf(const Recipe& recipe, const Shard& shard,
+                   const std::vector<ModelInfo>& models = {});
 
 // FAILED_PRECONDITION if the weights of a model are not those that the set was begun with.
-absl::Status CheckWeights(const JobIdentity& begun, const JobIdentity& now);
+absl::Status CheckWeights(const v1::Job& begun, const v1::Job& now);
 
 // A data set's folder, held by one process.
 //
@@ -47,9 +35,9 @@ class JobFolder {
   // identity of the job into `begun`, with no models if there is no job. ABORTED if the folder is
   // locked or cannot be written; FAILED_PRECONDITION, with the differences, if that is not the
   // `wanted` identity.
-  absl::Status Open(const JobIdentity& wanted, JobIdentity* begun);
+  absl::Status Open(const v1::Job& wanted, v1::Job* begun);
   // Stores the identity of a new job.
-  absl::Status Begin(const JobIdentity& identity) const;
+  absl::Status Begin(const v1::Job& identity) const;
 
   const std::filesystem::path& out() const { return out_; }
   std::filesystem::path journal() const { return state() / "journal"; }
@@ -57,8 +45,6 @@ class JobFolder {
 
  private:
   std::filesystem::path state() const { return out_ / ".duet-batch"; }
-  // Reads the identity of the job and compares it with the wanted one.
-  absl::Status Compare(const JobIdentity& wanted, JobIdentity* begun) const;
 
   std::filesystem::path out_;
   FolderLock lock_;
@@ -66,7 +52,7 @@ class JobFolder {
 
 // Reads <out>/.duet-batch/job.json. NOT_FOUND if `out` is not a data set of `duet batch`,
 // FAILED_PRECONDITION if the file is damaged.
-absl::StatusOr<JobIdentity> ReadJobIdentity(const std::filesystem::path& out);
+absl::StatusOr<v1::Job> ReadJob(const std::filesystem::path& out);
 
 // The folder of a shard's data set: `out` itself unless there are several shards.
 std::filesystem::path ShardFolder(const std::filesystem::path& out, const Shard& shard);
@@ -85,8 +71,8 @@ struct Gathered {
 //
 // Errors: ABORTED if a shard is in use or a folder cannot be written; FAILED_PRECONDITION if a
 // shard has another recipe or other models; DATA_LOSS for a damaged journal.
-absl::StatusOr<Gathered> GatherShards(const JobIdentity& wanted, const JobFolder& folder,
-                                      JobIdentity* begun);
+absl::StatusOr<Gathered> GatherShards(const v1::Job& wanted, const JobFolder& folder,
+                                      v1::Job* begun);
 
 }  // namespace duet::client::batch
 

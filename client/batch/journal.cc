@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <fstream>
-#include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -121,7 +120,7 @@ absl::Status JournalWriter::Open(const std::filesystem::path& path, uint64_t siz
       fsync(descriptor_) != 0) {
     return CannotWrite(path, errno);
   }
-  return SyncFolder(path.parent_path());
+  return SyncFileSystem(path.parent_path());
 }
 
 void JournalWriter::Add(int64_t item, absl::string_view record) {

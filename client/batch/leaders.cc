@@ -19,7 +19,6 @@
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
-#include "model/motion/stated_unit.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::batch {
@@ -72,25 +71,21 @@ class LeaderList final : public LeaderSource {
   size_t next_ = 0;
 };
 
-// Whether a file of a folder may be a leader. Without a format, its extension must be that of a
-// motion and of nothing else; with one, its extension must not be that of another format.
-bool MayLead(const fs::path& file, const std::optional<formats::Format>& format) {
+// Whether a file of a folder may be a leader: its extension is that of a motion and of nothing
+// else.
+bool MayLead(const fs::path& file) {
   const std::string extension = absl::AsciiStrToLower(file.extension().string());
-  if (!format.has_value()) {
-    return formats::IsReadable(file) && extension != ".txt" && extension != ".json";
-  }
-  return formats::FormatOf(file).value_or(*format) == *format;
+  return formats::IsReadable(file) && extension != ".txt" && extension != ".json";
 }
 
-absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Format>& format,
-                       LeaderList* list) {
+absl::Status AddFolder(const fs::path& folder, LeaderList* list) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
        it.increment(error)) {
     std::error_code unknown;
     const bool missing = it->is_symlink(unknown) && !it->exists(unknown);
-    if ((missing || it->is_regular_file(unknown)) && MayLead(it->path(), format)) {
+    if ((missing || it->is_regular_file(unknown)) && MayLead(it->path())) {
       files.push_back(it->path());
     }
   }
@@ -105,16 +100,12 @@ absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Form
   return absl::OkStatus();
 }
 
-absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>& format,
-                      LeaderList* list) {
+absl::Status AddInput(const fs::path& path, LeaderList* list) {
   std::error_code error;
-  if (fs::is_directory(path, error)) return AddFolder(path, format, list);
-  if (fs::exists(path, error)) {
-    if (format.has_value() || formats::IsReadable(path)) return list->Add(path, path.filename());
-    return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),
-                    motion::ReadingSetting::kFormat);
-  }
-  return base::MissingFile(path, "file or folder");
+  if (fs::is_directory(path, error)) return AddFolder(path, list);
+  if (!fs::exists(path, error)) return base::MissingFile(path, "file or folder");
+  if (formats::IsReadable(path)) return list->Add(path, path.filename());
+  return formats::UnknownExtension(path, formats::kReadableExtensions);
 }
 
 // The columns of a line by name, without empty ones.
@@ -285,11 +276,15 @@ bool IsWithin(const fs::path& path, const fs::path& folder) {
   return in_folder == folder.end();
 }
 
-absl::StatusOr<FollowerStart> ReadStart(const std::filesystem::path& file,
-                                        const formats::ReadOptions& options) {
-  absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(file, options);
-  if (!pose.ok()) return pose.status();
-  return FollowerStart(*std::move(pose));
+absl::Status WithMendingField(const absl::Status& status) {
+  const absl::string_view field = motion::MendingField(status);
+  // The extension alone states the format.
+  if (field.empty() || motion::MendingSetting(status) == motion::ReadingSetting::kFormat) {
+    return status;
+  }
+  return absl::Status(
+      status.code(),
+      absl::StrCat(status.message(), "; specify it in the recipe: input { ", field, " }"));
 }
 
 absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const LeaderInput& input,
@@ -304,47 +299,15 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   std::error_code error;
   // In the leader's own file, the follower is the other person.
   const bool own = start.empty() || std::filesystem::equivalent(file, entry.file, error);
-  // The settings describe leaders; another file may have another format.
-  if (!own && formats::IsReadable(file)) options.format.reset();
   options.side = own ? OtherSide(side) : formats::Side::kLeft;
-  absl::StatusOr<FollowerStart> pose = ReadStart(file, options);
-  if (!pose.ok()) return pose.status();
+  absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(file, options);
+  if (!pose.ok()) return WithMendingField(pose.status());
   loaded->follower_start = *std::move(pose);
   if (own) return absl::OkStatus();
   absl::StatusOr<std::string> digest = base::Sha256HexOfFile(file);
   if (!digest.ok()) return digest.status();
   loaded->start_sha256 = *std::move(digest);
   return absl::OkStatus();
-}
-
-absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
-                                  const LeaderInput& input, const motion::Skeleton& skeleton) {
-  formats::ReadOptions options = input.reading;
-  options.skeleton = skeleton;
-  options.side = side;
-  absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
-  if (!clip.ok()) return clip.status();
-  absl::StatusOr<std::string> digest = base::Sha256HexOfFile(entry.file);
-  if (!digest.ok()) return digest.status();
-  LoadedLeader loaded;
-  loaded.clip = *std::move(clip);
-  loaded.sha256 = *std::move(digest);
-  absl::Status status = SetStart(entry, side, input, options, &loaded);
-  if (!status.ok()) return status;
-  return loaded;
-}
-
-absl::Status WithMendingField(const absl::Status& status) {
-  const absl::string_view field = motion::MendingField(status);
-  if (field.empty()) return status;
-  return absl::Status(
-      status.code(),
-      absl::StrCat(status.message(), "; specify it in the recipe: input { ", field, " }"));
-}
-
-// Whether two lines read the same motion.
-bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
-  return a.file == b.file && a.follower_start == b.follower_start;
 }
 
 }  // namespace
@@ -365,18 +328,16 @@ std::string KeyOf(const std::filesystem::path& path) {
   return key;
 }
 
-absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
-    const std::vector<std::string>& inputs, const std::optional<formats::Format>& format) {
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs) {
   auto list = std::make_unique<LeaderList>();
   for (const std::string& input : inputs) {
-    absl::Status status = AddInput(input, format, list.get());
+    absl::Status status = AddInput(input, list.get());
     if (!status.ok()) return status;
   }
   if (list->empty()) {
-    const absl::Status none = absl::InvalidArgumentError(
+    return absl::InvalidArgumentError(
         absl::StrCat("leaders: expected one or more motion files, got none. Formats: ",
                      formats::kReadableExtensions));
-    return format.has_value() ? none : MendedBy(none, motion::ReadingSetting::kFormat);
   }
   return std::unique_ptr<LeaderSource>(std::move(list));
 }
@@ -403,19 +364,27 @@ absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path&
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
                                         const LeaderInput& input,
                                         const motion::Skeleton& skeleton) {
-  absl::StatusOr<LoadedLeader> loaded = Load(entry, side, input, skeleton);
-  if (!loaded.ok()) return WithMendingField(loaded.status());
+  formats::ReadOptions options = input.reading;
+  options.skeleton = skeleton;
+  options.side = side;
+  absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
+  if (!clip.ok()) return WithMendingField(clip.status());
+  absl::StatusOr<std::string> digest = base::Sha256HexOfFile(entry.file);
+  if (!digest.ok()) return digest.status();
+  LoadedLeader loaded;
+  loaded.clip = *std::move(clip);
+  loaded.sha256 = *std::move(digest);
+  absl::Status status = SetStart(entry, side, input, options, &loaded);
+  if (!status.ok()) return status;
   return loaded;
 }
 
 std::shared_ptr<SharedLeader> LastLeaders::Get(const std::shared_ptr<const LeaderEntry>& entry,
                                                formats::Side side, int skeleton) {
-  Last& last = last_[static_cast<size_t>(skeleton)];
-  if (last.leader == nullptr || last.side != side ||
-      (last.entry != entry && !SameMotion(*last.entry, *entry))) {
-    last = {entry, side, std::make_shared<SharedLeader>(entry, side)};
-  }
-  return last.leader;
+  std::shared_ptr<SharedLeader>& last = last_[static_cast<size_t>(skeleton)];
+  if (last == nullptr || !last->Is(*entry, side))
+    last = std::make_shared<SharedLeader>(entry, side);
+  return last;
 }
 
 }  // namespace duet::client::batch

@@ -54,16 +54,13 @@ class LeaderSource {
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 
-// Files, and folders: all motion files below, also links to missing ones, by name; .txt and .json
-// files only if `format` is theirs, because these can be anything. Files of a folder are named by
-// their path in it, other files by their own name. With `format`, a file may have any extension,
-// and files of a folder any extension that is not that of another format.
+// Files, and folders: all motion files below, also links to missing ones, by name, except .txt and
+// .json files, because these can be anything. Files of a folder are named by their path in it,
+// other files by their own name.
 //
 // Errors: NOT_FOUND for missing inputs; INVALID_ARGUMENT for a file of unknown format, for two
 //         leaders with the same key, and if there is no motion file.
-absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
-    const std::vector<std::string>& inputs,
-    const std::optional<formats::Format>& format = std::nullopt);
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(const std::vector<std::string>& inputs);
 
 // Reads a manifest line by line: tab-separated values whose first row names the columns
 // (docs/batch.md). Relative paths begin at `folder`; errors call the manifest `name`.
@@ -96,6 +93,12 @@ class SharedLeader {
   SharedLeader(std::shared_ptr<const LeaderEntry> entry, formats::Side side)
       : entry_(std::move(entry)), side_(side) {}
 
+  // Whether an entry reads the same motion.
+  bool Is(const LeaderEntry& entry, formats::Side side) const {
+    return side == side_ && entry.file == entry_->file &&
+           entry.follower_start == entry_->follower_start;
+  }
+
   const absl::StatusOr<LoadedLeader>& Get(const LeaderInput& input,
                                           const motion::Skeleton& skeleton) {
     std::call_once(once_, [&] { loaded_ = LoadLeader(*entry_, side_, input, skeleton); });
@@ -119,12 +122,7 @@ class LastLeaders {
                                     formats::Side side, int skeleton);
 
  private:
-  struct Last {
-    std::shared_ptr<const LeaderEntry> entry;
-    formats::Side side = formats::Side::kLeft;
-    std::shared_ptr<SharedLeader> leader;
-  };
-  std::vector<Last> last_;  // by skeleton
+  std::vector<std::shared_ptr<SharedLeader>> last_;  // by skeleton
 };
 
 }  // namespace duet::client::batch

@@ -28,16 +28,18 @@ constexpr size_t kIdDigits = 32;
 constexpr std::size_t kMaxPartBytes = 200;
 // Linux opens paths of up to 4095 bytes; the data set's folder needs the rest.
 constexpr std::size_t kMaxPathBytes = 1000;
-constexpr std::size_t kDigestDigits = 16;
-constexpr std::size_t kKeptBytes = 120;
 // Drawn weights are multiples of 1 / kWeightsInOne, so that they have few decimals.
 constexpr double kWeightsInOne = 1000;
 
-uint64_t DrawnNumber(const std::string& from) {
+uint64_t HexNumber(absl::string_view digits) {
   uint64_t number = 0;
-  // 13 hex digits: 52 bits.
-  (void)absl::SimpleHexAtoi(base::Sha256Hex(from).substr(0, 13), &number);
+  (void)absl::SimpleHexAtoi(digits, &number);
   return number;
+}
+
+// 52 bits.
+uint64_t DrawnNumber(const std::string& from) {
+  return HexNumber(base::Sha256Hex(from).substr(0, 13));
 }
 
 std::string Text(const Labels& labels) {
@@ -55,9 +57,6 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   std::string text = absl::StrCat(who, "\n", SideName(item.side), "\n", item.reaction, "\n",
                                   Text(item.labels), "\n", model.name, "@", model.version, "\n",
                                   item.sample, "\n", recipe.variety, "\n", start, "\n");
-  for (const TimedLabels& keyframe : item.keyframes) {
-    absl::StrAppend(&text, keyframe.at, ":", Text(keyframe.labels), "\n");
-  }
   if (leader.partner_direction) {
     const motion::Vec3& to = *leader.partner_direction;
     absl::StrAppend(&text, "direction ", to.x, ",", to.y, ",", to.z, "\n");
@@ -94,23 +93,22 @@ const std::string& PlaceOf(const LeaderEntry& leader) {
   return leader.line.empty() ? leader.given : leader.line;
 }
 
-uint32_t HexNumber(absl::string_view digits) {
-  uint32_t number = 0;
-  for (const char c : digits) {
-    number = number * 16 + static_cast<uint32_t>(c <= '9' ? c - '0' : c - 'a' + 10);
+bool HasClass(const ModelInfo& model, const std::string& name) {
+  const auto& known = model.interaction_classes;
+  return std::find(known.begin(), known.end(), name) != known.end();
+}
+
+// INVALID_ARGUMENT for a name that file systems cannot hold.
+absl::Status CheckName(const Item& item) {
+  std::size_t longest = 0;
+  for (const absl::string_view part : absl::StrSplit(item.name, '/')) {
+    longest = std::max(longest, part.size());
   }
-  return number;
-}
-
-// At most the first `bytes` bytes, without truncating a character.
-std::string Beginning(const std::string& text, std::size_t bytes) {
-  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0u) == 0x80u) --bytes;
-  return text.substr(0, bytes);
-}
-
-std::string Shortened(const std::string& text, const std::string& of) {
-  return absl::StrCat(Beginning(text, kKeptBytes), "_",
-                      base::Sha256Hex(of).substr(0, kDigestDigits));
+  if (longest <= kMaxPartBytes && item.name.size() <= kMaxPathBytes) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      PlaceOf(*item.leader), ": name: expected at most ", kMaxPathBytes, " bytes in parts of ",
+      kMaxPartBytes, ", got ", item.name.size(), " in parts of ", longest, ": ", item.name,
+      ". Name the leader by a shorter id in a manifest"));
 }
 
 float DrawWeight(const WeightRange& range, base::Random* random) {
@@ -128,13 +126,6 @@ Labels DrawMix(const v1::Mixes& mixes, std::vector<std::string> classes, base::R
   return labels;
 }
 
-// The classes of mixes, or of a vector for each class; empty: the model's.
-std::vector<std::string> ClassesOf(const v1::Reaction& reaction) {
-  const auto& classes =
-      reaction.has_mixes() ? reaction.mixes().classes() : reaction.each_class().classes();
-  return {classes.begin(), classes.end()};
-}
-
 // A class or a model as a part of a file name, without dashes, which separate the parts.
 std::string PlainName(const std::string& name) {
   return absl::StrReplaceAll(KeyOf(name), {{"/", "_"}, {"-", "_"}, {"+", "_"}});
@@ -144,7 +135,7 @@ std::string PlainName(const std::string& name) {
 
 bool Shard::Has(absl::string_view item_id) const {
   // The id is a digest, so its hex digits are uniformly distributed.
-  return static_cast<int>(HexNumber(item_id.substr(0, 8)) % static_cast<uint32_t>(count)) == index;
+  return static_cast<int>(HexNumber(item_id.substr(0, 8)) % static_cast<uint64_t>(count)) == index;
 }
 
 absl::StatusOr<Shard> ParseShard(absl::string_view text) {
@@ -168,16 +159,6 @@ std::string NameOfLabels(const Labels& labels) {
     name += absl::StrReplaceAll(WeightText(label.weight), {{".", "p"}, {"-", "m"}, {"+", ""}});
   }
   return name;
-}
-
-std::string FitFileName(const std::string& name) {
-  std::vector<std::string> parts = absl::StrSplit(name, '/');
-  for (std::string& part : parts) {
-    if (part.size() > kMaxPartBytes) part = Shortened(part, part);
-  }
-  std::string fitting = absl::StrJoin(parts, "/");
-  if (fitting.size() <= kMaxPathBytes) return fitting;
-  return Shortened(absl::StrReplaceAll(name, {{"/", "_"}}), name);
 }
 
 uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view content, int retry) {
@@ -209,30 +190,32 @@ absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
   return plan;
 }
 
-std::vector<std::string> Plan::ClassesOr(const std::vector<std::string>& classes) const {
-  return classes.empty() ? models_.front().interaction_classes : classes;
+std::vector<std::string> Plan::ClassesOf(const v1::Reaction& reaction) const {
+  const auto& classes =
+      reaction.has_mixes() ? reaction.mixes().classes() : reaction.each_class().classes();
+  if (classes.empty()) return models_.front().interaction_classes;
+  return {classes.begin(), classes.end()};
 }
 
-absl::Status Plan::AddNamed(const v1::Reaction& reaction, LabelledReaction labelled) {
+absl::Status Plan::AddNamed(const v1::Reaction& reaction, Labels labels) {
   // A single reaction has the name of its entry; several append their labels.
-  const std::string own = NameOfLabels(labelled.labels);
-  const bool single = reaction.has_labels() || reaction.has_schedule();
-  labelled.name = reaction.name();
-  if (labelled.name.empty()) labelled.name = own.empty() ? "schedule" : own;
-  if (!reaction.name().empty() && !single) labelled.name = absl::StrCat(reaction.name(), "_", own);
-  const auto same_name = [&labelled](const LabelledReaction& other) {
-    return other.name == labelled.name;
-  };
+  std::string name = NameOfLabels(labels);
+  if (reaction.has_labels() && !reaction.name().empty()) {
+    name = reaction.name();
+  } else if (!reaction.name().empty()) {
+    name = absl::StrCat(reaction.name(), "_", name);
+  }
+  const auto same_name = [&name](const LabelledReaction& other) { return other.name == name; };
   if (std::any_of(fixed_.begin(), fixed_.end(), same_name)) {
     return absl::InvalidArgumentError(absl::StrCat("reactions: expected different names, got ",
-                                                   labelled.name, " twice. Set name in each"));
+                                                   name, " twice. Set name in each"));
   }
-  fixed_.push_back(std::move(labelled));
+  fixed_.push_back({std::move(name), std::move(labels)});
   return absl::OkStatus();
 }
 
 absl::Status Plan::AddDrawn(const v1::Reaction& reaction) {
-  const std::vector<std::string> classes = ClassesOr(ClassesOf(reaction));
+  const std::vector<std::string> classes = ClassesOf(reaction);
   if (ClassesInMix(reaction.mixes()) > classes.size()) {
     return absl::InvalidArgumentError(
         absl::StrCat("reactions: classes_in_mix: expected at most the ", classes.size(),
@@ -251,43 +234,26 @@ absl::Status Plan::AddDrawn(const v1::Reaction& reaction) {
 
 absl::Status Plan::AddReaction(const v1::Reaction& reaction) {
   if (reaction.has_mixes()) return AddDrawn(reaction);
-  std::vector<LabelledReaction> added;
-  if (reaction.has_labels()) added.push_back({"", ToLabels(reaction.labels()), {}});
-  if (reaction.has_schedule()) {
-    added.emplace_back();
-    for (const v1::Schedule::Keyframe& keyframe : reaction.schedule().keyframes()) {
-      added.back().keyframes.push_back({keyframe.at(), ToLabels(keyframe.labels())});
-    }
+  if (reaction.has_labels()) return AddNamed(reaction, ToLabels(reaction.labels()));
+  absl::Status status;
+  for (const std::string& name : ClassesOf(reaction)) {
+    status.Update(AddNamed(reaction, {{name, 1}}));
   }
-  if (reaction.has_each_class()) {
-    for (const std::string& name : ClassesOr(ClassesOf(reaction))) {
-      added.push_back({"", {{name, 1}}, {}});
-    }
-  }
-  for (LabelledReaction& labelled : added) {
-    absl::Status status = AddNamed(reaction, std::move(labelled));
-    if (!status.ok()) return status;
-  }
-  return absl::OkStatus();
+  return status;
 }
 
 absl::Status Plan::CheckClasses() const {
   std::set<std::string> wanted;
-  const auto want = [&wanted](const Labels& labels) {
-    for (const ClassWeight& label : labels) wanted.insert(label.interaction_class);
-  };
   for (const LabelledReaction& reaction : fixed_) {
-    want(reaction.labels);
-    for (const TimedLabels& keyframe : reaction.keyframes) want(keyframe.labels);
+    for (const ClassWeight& label : reaction.labels) wanted.insert(label.interaction_class);
   }
   for (const v1::Reaction& reaction : drawn_) {
-    const std::vector<std::string> classes = ClassesOr(ClassesOf(reaction));
+    const std::vector<std::string> classes = ClassesOf(reaction);
     wanted.insert(classes.begin(), classes.end());
   }
   for (const ModelInfo& model : models_) {
     for (const std::string& name : wanted) {
-      const auto& known = model.interaction_classes;
-      if (std::count(known.begin(), known.end(), name) > 0) continue;
+      if (HasClass(model, name)) continue;
       return absl::InvalidArgumentError(absl::StrCat("reactions: expected a class of ", model.name,
                                                      "@", model.version, ", got ",
                                                      base::Quoted(name)));
@@ -310,31 +276,28 @@ void Plan::DrawFor(const LeaderEntry& leader) {
     const std::string& name = drawn_[i].name();
     for (uint32_t mix = 0; mix < drawn_[i].mixes().count(); ++mix) {
       reactions_.push_back({absl::StrCat(name.empty() ? "mix" : name, mix),
-                            DrawMix(drawn_[i].mixes(), ClassesOr(ClassesOf(drawn_[i])), &random),
-                            {},
-                            true});
+                            DrawMix(drawn_[i].mixes(), ClassesOf(drawn_[i]), &random), true});
     }
   }
 }
 
 absl::Status Plan::CheckLabels(const LeaderEntry& leader) const {
   for (const ModelInfo& model : models_) {
-    const auto& known = model.interaction_classes;
     for (const ClassWeight& label : leader.labels) {
-      if (std::count(known.begin(), known.end(), label.interaction_class) > 0) continue;
-      return absl::InvalidArgumentError(absl::StrCat(
-          PlaceOf(leader), ": labels: expected classes of ", model.name, "@", model.version, " (",
-          absl::StrJoin(known, ", "), "), got ", base::Quoted(label.interaction_class)));
+      if (HasClass(model, label.interaction_class)) continue;
+      return absl::InvalidArgumentError(
+          absl::StrCat(PlaceOf(leader), ": labels: expected classes of ", model.name, "@",
+                       model.version, " (", absl::StrJoin(model.interaction_classes, ", "),
+                       "), got ", base::Quoted(label.interaction_class)));
     }
   }
   return absl::OkStatus();
 }
 
 absl::Status Plan::BeginLeader(LeaderEntry leader) {
-  reactions_ =
-      leader.labels.empty()
-          ? fixed_
-          : std::vector<LabelledReaction>{{NameOfLabels(leader.labels), leader.labels, {}}};
+  reactions_ = leader.labels.empty()
+                   ? fixed_
+                   : std::vector<LabelledReaction>{{NameOfLabels(leader.labels), leader.labels}};
   if (leader.labels.empty()) DrawFor(leader);
   if (reactions_.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
@@ -342,8 +305,8 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
   }
   absl::Status status = CheckLabels(leader);
   if (!status.ok()) return status;
-  sides_ = {recipe_.input.side == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
-  if (recipe_.input.side == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
+  sides_ = {recipe_.input.side == v1::SIDE_RIGHT ? formats::Side::kRight : formats::Side::kLeft};
+  if (recipe_.input.side == v1::SIDE_BOTH) sides_ = {formats::Side::kLeft, formats::Side::kRight};
   if (leader.side.has_value()) sides_ = {*leader.side};
   leader_ = std::make_shared<const LeaderEntry>(std::move(leader));
   side_ = reaction_ = model_ = 0;
@@ -353,7 +316,7 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
 
 std::string Plan::NameOf(const Item& item) const {
   std::string name = item.leader->key;
-  if (recipe_.input.side == Sides::kBoth) absl::StrAppend(&name, "-", SideName(item.side));
+  if (recipe_.input.side == v1::SIDE_BOTH) absl::StrAppend(&name, "-", SideName(item.side));
   absl::StrAppend(&name, "-", item.reaction);
   if (models_.size() > 1) {
     const ModelInfo& model = models_[static_cast<size_t>(item.model)];
@@ -371,13 +334,10 @@ Item Plan::MakeItem() {
   item.side = sides_[side_];
   item.reaction = reaction.name;
   item.labels = reaction.labels;
-  item.keyframes = reaction.keyframes;
   item.drawn = reaction.drawn;
   item.model = static_cast<int>(model_);
   item.sample = sample_;
-  std::string name = NameOf(item);
-  item.name = FitFileName(name);
-  if (item.name != name) item.full_name = std::move(name);
+  item.name = NameOf(item);
   SetDigests(recipe_, models_[static_cast<size_t>(item.model)], &item);
   return item;
 }
@@ -406,6 +366,11 @@ absl::StatusOr<std::optional<Item>> Plan::Next() {
         absl::StrCat("plan: expected at most ", kMaxItems, " items, got more. Make several sets."));
   }
   Item item = MakeItem();
+  absl::Status status = CheckName(item);
+  if (!status.ok()) {
+    leader_ = nullptr;
+    return status;
+  }
   ++number_;
   if (!Advance()) leader_ = nullptr;
   return std::optional<Item>(std::move(item));

@@ -19,17 +19,15 @@ namespace duet::client::batch {
 
 // One follower to make.
 struct Item {
-  int64_t number = 0;     // from 0, in the order of the leaders
-  std::string id;         // 32 hex digits: the digest of the whole request
-  std::string asked;      // the same of what is asked of the leader's file
-  std::string place;      // 32 hex digits that decide the shard that has the item
-  std::string name;       // unique path of its files, without extension
-  std::string full_name;  // the name before it was shortened; empty if it was not
+  int64_t number = 0;  // from 0, in the order of the leaders
+  std::string id;      // 32 hex digits: the digest of the whole request
+  std::string asked;   // the same of what is asked of the leader's file
+  std::string place;   // 32 hex digits that decide the shard that has the item
+  std::string name;    // unique path of its files, without extension
   std::shared_ptr<const LeaderEntry> leader;
   formats::Side side = formats::Side::kLeft;
   std::string reaction;
-  Labels labels;  // or keyframes
-  std::vector<TimedLabels> keyframes;
+  Labels labels;
   bool drawn = false;  // the labels are drawn for the leader
   int model = 0;       // index into the plan's models
   int sample = 0;
@@ -64,25 +62,25 @@ class Plan {
                                      std::unique_ptr<LeaderSource> leaders);
 
   // The next item; nullopt at the end. After INVALID_ARGUMENT, which concerns one leader or one
-  // line of a manifest (such as an unknown class), the next call continues with the next leader.
-  // Any other error ends the plan.
+  // line of a manifest (an unknown class, a name of more than 200 bytes), the next call continues
+  // with the next leader. Any other error ends the plan.
   absl::StatusOr<std::optional<Item>> Next();
 
  private:
   struct LabelledReaction {
     std::string name;
     Labels labels;
-    std::vector<TimedLabels> keyframes;
     bool drawn = false;
   };
 
   Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders);
   absl::Status AddReaction(const v1::Reaction& reaction);
   absl::Status AddDrawn(const v1::Reaction& reaction);
-  absl::Status AddNamed(const v1::Reaction& reaction, LabelledReaction labelled);
+  absl::Status AddNamed(const v1::Reaction& reaction, Labels labels);
   absl::Status CheckClasses() const;
   absl::Status CheckLabels(const LeaderEntry& leader) const;
-  std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
+  // The classes of mixes, or of a vector for each class.
+  std::vector<std::string> ClassesOf(const v1::Reaction& reaction) const;
   std::string DrawnFrom(const LeaderEntry& leader);
   void DrawFor(const LeaderEntry& leader);
   absl::Status BeginLeader(LeaderEntry leader);
@@ -137,12 +135,6 @@ absl::Status BadLinesError(const PlanCheck& check);
 
 // Classes and weights as a name: "kick", "kick0p5+hug1". A single weight of 1 is left out.
 std::string NameOfLabels(const Labels& labels);
-
-// `name`, a path of several parts without an ending, as file systems and archives can hold it: a
-// part of more than 200 bytes becomes its beginning and the digest of the whole part, "long_..._" +
-// 16 hex digits; a path that is still longer than 1000 bytes becomes a single such part. Short
-// names stay as they are, different ones stay different, and the same name always gives the same.
-std::string FitFileName(const std::string& name);
 
 }  // namespace duet::client::batch
 

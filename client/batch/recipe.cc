@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <set>
-#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -22,7 +21,6 @@
 #include "model/base/text.h"
 #include "model/messages/message_text.h"
 #include "model/motion/motion_limits.h"
-#include "model/motion/stated_unit.h"
 
 namespace duet::client::batch {
 namespace {
@@ -88,19 +86,6 @@ void CheckMixes(const v1::Mixes& mixes, const std::string& field, Checker* check
                 "at most max_weight");
 }
 
-void CheckSchedule(const v1::Schedule& schedule, const std::string& field, Checker* check) {
-  check->Expect(schedule.keyframes_size() > 0, field + ".keyframes", "none", "one or more");
-  double last = -1;
-  for (int i = 0; i < schedule.keyframes_size(); ++i) {
-    const v1::Schedule::Keyframe& keyframe = schedule.keyframes(i);
-    const std::string at = absl::StrCat(field, ".keyframes[", i, "]");
-    check->Expect(keyframe.at() >= 0 && keyframe.at() <= 1 && keyframe.at() > last, at + ".at",
-                  absl::StrCat(keyframe.at()), "0 to 1, rising");
-    last = keyframe.at();
-    CheckLabels(keyframe.labels(), at, check);
-  }
-}
-
 bool IsName(const std::string& name) {
   return std::all_of(name.begin(), name.end(),
                      [](unsigned char c) { return absl::ascii_isalnum(c) || c == '_'; });
@@ -116,10 +101,8 @@ void CheckReaction(const v1::Reaction& reaction, const std::string& field, Check
       return CheckMixes(reaction.mixes(), field + ".mixes", check);
     case v1::Reaction::kEachClass:
       return check->Different(field + ".each_class.classes", reaction.each_class().classes());
-    case v1::Reaction::kSchedule:
-      return CheckSchedule(reaction.schedule(), field + ".schedule", check);
     case v1::Reaction::KIND_NOT_SET:
-      check->Expect(false, field, "nothing", "one of labels, mixes, each_class and schedule");
+      check->Expect(false, field, "nothing", "one of labels, mixes and each_class");
   }
 }
 
@@ -127,8 +110,7 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
   LeaderInput input;
   formats::ReadOptions& reading = input.reading;
   check->Expect(v1::Side_IsValid(proto.side()), "input.side", absl::StrCat(proto.side()), "a side");
-  if (proto.side() == v1::SIDE_RIGHT) input.side = Sides::kRight;
-  if (proto.side() == v1::SIDE_BOTH) input.side = Sides::kBoth;
+  if (proto.side() != v1::SIDE_UNSPECIFIED) input.side = proto.side();
   input.starts_as_other_person = proto.follower_start() == v1::FOLLOWER_START_OTHER_PERSON;
   if (proto.has_frame_rate_hz()) reading.frame_rate_hz = proto.frame_rate_hz();
   if (proto.has_metres_per_unit()) reading.metres_per_unit = proto.metres_per_unit();
@@ -136,11 +118,6 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
                 absl::StrCat(proto.frame_rate_hz()), "more than 0");
   check->Expect(reading.metres_per_unit.value_or(1) > 0, "input.metres_per_unit",
                 absl::StrCat(proto.metres_per_unit()), "more than 0");
-  if (proto.has_format()) {
-    reading.format = formats::ParseFormat(proto.format());
-    check->Expect(reading.format.has_value(), "input.format", base::Quoted(proto.format()),
-                  formats::kReadableFormatNames);
-  }
   if (proto.up_size() > 0) {
     const auto& up = proto.up();
     input.up = proto.up_size() == 3 ? motion::Vec3{up[0], up[1], up[2]} : motion::Vec3{};
@@ -164,14 +141,11 @@ void CheckFilter(const v1::QualityFilter& filter, Checker* check) {
   check->Count("filter.retries_per_item", filter.retries_per_item(), 0, kMaxRetries);
 }
 
-// The formats of the enum that a set can have.
-bool IsFormat(int format) { return v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED; }
-
 void CheckOutput(const v1::Output& output, Checker* check) {
   check->Expect(output.formats_size() > 0, "output.formats", "none", "one or more");
   for (const int format : output.formats()) {
-    check->Expect(IsFormat(format), "output.formats", absl::StrCat(format),
-                  "FORMAT_BVH, FORMAT_NPY or FORMAT_GLB");
+    check->Expect(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
+                  absl::StrCat(format), "FORMAT_BVH, FORMAT_NPY or FORMAT_GLB");
   }
   check->Different("output.formats", output.formats());
   const double rate_hz = output.has_frame_rate_hz() ? output.frame_rate_hz() : 1;
@@ -233,15 +207,6 @@ std::string Digest(const v1::Recipe& recipe) {
   return base::Sha256Hex(bytes);
 }
 
-std::string ToJson(const v1::Recipe& recipe) {
-  std::string json;
-  google::protobuf::util::JsonPrintOptions options;
-  options.preserve_proto_field_names = true;
-  // Cannot fail for a message without Any.
-  (void)google::protobuf::util::MessageToJsonString(recipe, &json, options);
-  return json;
-}
-
 }  // namespace
 
 absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json) {
@@ -263,6 +228,16 @@ absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path) {
   if (recipe.ok()) return recipe;
   return absl::Status(recipe.status().code(),
                       absl::StrCat(path.string(), ": ", recipe.status().message()));
+}
+
+std::string ToJson(const google::protobuf::Message& message, bool add_whitespace) {
+  std::string json;
+  google::protobuf::util::JsonPrintOptions options;
+  options.preserve_proto_field_names = true;
+  options.add_whitespace = add_whitespace;
+  // Cannot fail for a message without Any.
+  (void)google::protobuf::util::MessageToJsonString(message, &json, options);
+  return json;
 }
 
 std::string DescribeDifference(const std::string& before, const std::string& now) {

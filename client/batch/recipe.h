@@ -20,16 +20,8 @@ namespace v1 = ::duet::batch::v1;
 
 using Labels = std::vector<ClassWeight>;  // by class name
 
-// Label vectors at times: 0 is the leader's first frame, 1 its last.
-struct TimedLabels {
-  double at = 0;
-  Labels labels;
-};
-
-enum class Sides { kLeft, kRight, kBoth };
-
 struct LeaderInput {
-  Sides side = Sides::kLeft;
+  v1::Side side = v1::SIDE_LEFT;
   bool starts_as_other_person = false;
   formats::ReadOptions reading;    // without side and skeleton
   std::optional<motion::Vec3> up;  // the vertical of every leader (SynthesisOptions::up)
@@ -59,6 +51,9 @@ absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json);
 // Reads a recipe file: JSON if it ends in ".json", otherwise text format. Errors name the file;
 // also NOT_FOUND.
 absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path);
+
+// One JSON object with the proto's field names.
+std::string ToJson(const google::protobuf::Message& message, bool add_whitespace = false);
 
 // How a recipe was changed, both as Recipe::json: "modified: seed: 7 -> 9; added:
 // output.formats[1]: FORMAT_GLB". Empty if they are equal, or if one of them is no recipe.

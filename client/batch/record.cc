@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/text_values.h"
 #include "model/base/printable.h"
+#include "model/base/sha256.h"
 
 namespace duet::client::batch {
 namespace {
@@ -27,14 +28,6 @@ ordered_json LabelsJson(const Labels& labels) {
   return object;
 }
 
-ordered_json KeyframesJson(const std::vector<WeightKeyframe>& keyframes) {
-  ordered_json array = ordered_json::array();
-  for (const WeightKeyframe& keyframe : keyframes) {
-    array.push_back({{"frame", keyframe.frame}, {"labels", LabelsJson(keyframe.weights)}});
-  }
-  return array;
-}
-
 // In the order of the message's fields.
 ordered_json QualityJson(const Quality& quality) {
   ordered_json object = ordered_json::object();
@@ -49,7 +42,6 @@ ordered_json QualityJson(const Quality& quality) {
 ordered_json Begin(const Item& item, const char* state) {
   ordered_json record = {
       {"item", item.number}, {"id", item.id}, {"state", state}, {"name", item.name}};
-  if (!item.full_name.empty()) record["full_name"] = item.full_name;
   record["leader"] = item.leader->given;
   record["leader_sha256"] = "";
   record["side"] = std::string(SideName(item.side));
@@ -65,32 +57,29 @@ void AddExtra(const Item& item, ordered_json* record) {
   (*record)["extra"] = std::move(extra);
 }
 
-ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswer& answer) {
+ordered_json WithAnswer(const Item& item, const char* state, const Answer& answer) {
+  const SynthesisResult& result = answer.result;
   ordered_json record = Begin(item, state);
-  record["leader_sha256"] = answer.leader_sha256;
-  if (answer.keyframes.empty()) {
-    record["labels"] = LabelsJson(item.labels);
-  } else {
-    record["keyframes"] = KeyframesJson(answer.keyframes);
-  }
+  record["leader_sha256"] = answer.leader.sha256;
+  record["labels"] = LabelsJson(item.labels);
   if (item.leader->partner_direction.has_value()) {
     const motion::Vec3& to = *item.leader->partner_direction;
     record["partner_direction"] = {Number(to.x), Number(to.y), Number(to.z)};
   }
-  record["model"] = answer.model;
-  record["seed"] = answer.seed;
-  record["variety"] = Number(answer.variety);
-  record["candidates"] = answer.candidates;
-  record["request_id"] = answer.request_id;
-  record["frames"] = answer.frames;
-  record["frame_rate_hz"] = answer.frame_rate_hz;
+  record["model"] = ModelText(result);
+  record["seed"] = result.seed;
+  record["variety"] = Number(result.variety);
+  record["candidates"] = result.candidates;
+  record["request_id"] = result.request_id;
+  record["frames"] = result.pair.follower.frame_count();
+  record["frame_rate_hz"] = result.pair.follower.frame_rate_hz;
   record["skeleton"] = answer.skeleton;
   record["quality"] = QualityJson(answer.quality);
   if (answer.quality.unfamiliarity) {
     record["unfamiliarity"] = Rounded(*answer.quality.unfamiliarity);
   }
-  record["answers"] = answer.answers;
-  AddMadeBy(answer.made_by, &record);
+  record["answers"] = answer.retry + 1;
+  AddMadeBy(MadeByOf(result), &record);
   return record;
 }
 
@@ -98,6 +87,10 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
 
 MadeBy MadeByOf(const SynthesisResult& result) {
   return {result.cleaned_up, result.engine, result.server_version};
+}
+
+std::string ModelText(const SynthesisResult& result) {
+  return absl::StrCat(result.model_name, "@", result.model_version);
 }
 
 std::optional<MadeBy> MadeByOf(const v1::IndexEntry& record) {
@@ -111,19 +104,20 @@ void AddMadeBy(const MadeBy& made_by, ordered_json* record) {
   if (!made_by.server_version.empty()) (*record)["server_version"] = made_by.server_version;
 }
 
-ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer,
-                        const std::vector<RecordedFile>& files) {
+ordered_json DoneRecord(const Item& item, const Answer& answer,
+                        const std::vector<EncodedFile>& files) {
   ordered_json record = WithAnswer(item, kDone, answer);
   record["files"] = ordered_json::array();
-  for (const RecordedFile& file : files) {
-    record["files"].push_back(
-        {{"path", file.path}, {"bytes", file.bytes}, {"sha256", file.sha256}});
+  for (const EncodedFile& file : files) {
+    record["files"].push_back({{"path", item.name + file.ending},
+                               {"bytes", file.content.size()},
+                               {"sha256", base::Sha256Hex(file.content)}});
   }
   AddExtra(item, &record);
   return record;
 }
 
-ordered_json RejectedRecord(const Item& item, const RecordedAnswer& answer,
+ordered_json RejectedRecord(const Item& item, const Answer& answer,
                             const std::vector<std::string>& reasons) {
   ordered_json record = WithAnswer(item, kRejected, answer);
   record["reasons"] = reasons;

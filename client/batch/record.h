@@ -1,8 +1,6 @@
 #ifndef DUET_CLIENT_BATCH_RECORD_H_
 #define DUET_CLIENT_BATCH_RECORD_H_
 
-#include <cstdint>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -11,8 +9,9 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "client/batch/answer.h"
+#include "client/batch/leaders.h"
 #include "client/batch/plan.h"
-#include "client/request.h"
 #include "client/result.h"
 
 namespace duet::client::batch {
@@ -31,45 +30,26 @@ struct MadeBy {
 };
 
 MadeBy MadeByOf(const SynthesisResult& result);
+// "name@version" of its model.
+std::string ModelText(const SynthesisResult& result);
 // Absent for items without an answer.
 std::optional<MadeBy> MadeByOf(const v1::IndexEntry& record);
 void AddMadeBy(const MadeBy& made_by, nlohmann::ordered_json* record);
 
-// Quality of an answer: the figures of QualityFigures of proto/duet/batch/v1/batch.proto by their
-// names there. Figures are absent if the skeleton does not have their joints.
-struct Quality {
-  std::map<std::string, double> figures;
-  std::optional<double> unfamiliarity;  // IndexEntry.unfamiliarity
-};
-
-struct RecordedFile {
-  std::string path;
-  uint64_t bytes = 0;
-  std::string sha256;
-};
-
-// An answer as it is recorded in the index.
-struct RecordedAnswer {
-  std::string leader_sha256;
-  std::string model;  // name@version
-  uint64_t seed = 0;
-  float variety = 0;
-  int candidates = 1;
-  std::string request_id;
-  std::vector<WeightKeyframe> keyframes;
-  int frames = 0;
-  double frame_rate_hz = 0;
-  int skeleton = 0;  // index into dataset.json's
+// An answer to record.
+struct Answer {
+  const SynthesisResult& result;  // its pair has the rate of the output
+  const LoadedLeader& leader;
   Quality quality;
-  int answers = 1;
-  MadeBy made_by;
+  int skeleton = 0;  // index into dataset.json's
+  int retry = 0;     // 0: the first answer
 };
 
 // One JSON object with the fields in the proto's order and without times, so that the same item
 // always has the same record.
-nlohmann::ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer,
-                                  const std::vector<RecordedFile>& files);
-nlohmann::ordered_json RejectedRecord(const Item& item, const RecordedAnswer& answer,
+nlohmann::ordered_json DoneRecord(const Item& item, const Answer& answer,
+                                  const std::vector<EncodedFile>& files);
+nlohmann::ordered_json RejectedRecord(const Item& item, const Answer& answer,
                                       const std::vector<std::string>& reasons);
 nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error);
 

@@ -55,12 +55,7 @@ bool IsWhole(const fs::path& out, const v1::IndexEntry::File& file, bool read) {
 
 }  // namespace
 
-bool LeaderDigests::Knows(const LeaderEntry& leader) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return digests_.contains(KeyOfFile(leader));
-}
-
-absl::Status LeaderDigests::Check(const LeaderEntry& leader, const std::string& sha256) {
+absl::Status Survey::CheckLeader(const LeaderEntry& leader, const std::string& sha256) {
   const uint64_t digest = FirstBits(sha256);
   uint64_t known = 0;
   {
@@ -74,17 +69,14 @@ absl::Status LeaderDigests::Check(const LeaderEntry& leader, const std::string& 
       "...). Restore the file, or make another data set with another --out"));
 }
 
-absl::Status Makers::Check(const std::string& model, const MadeBy& made_by) {
+absl::Status Survey::CheckMaker(const std::string& model, const MadeBy& made_by) {
   const std::string now = Describe(made_by);
-  std::string first;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    first = first_.try_emplace(model, now).first->second;
-  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::string& first = makers_.try_emplace(model, now).first->second;
   if (first == now) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrCat(
       "model ", model, ": an answer was made in another way than the set's first one: expected ",
-      first, ", got ", now));
+      first, ", got ", now, ". Use servers that are set up alike, or choose another --out"));
 }
 
 absl::StatusOr<std::unique_ptr<Survey>> Survey::Open(const JobFolder& folder,
@@ -102,7 +94,7 @@ absl::Status Survey::Add(const Item& item) {
   if (!record.ok()) return absl::OkStatus();  // the run requests it again
   // A changed leader comes first, because it may also change the labels that are drawn from it.
   const bool same_leader = record->leader() == item.leader->given;
-  absl::Status status = same_leader ? CheckLeader(*item.leader, *record) : absl::OkStatus();
+  absl::Status status = same_leader ? CheckRecorded(*item.leader, *record) : absl::OkStatus();
   if (!status.ok()) return status;
   if (record->id() != item.id && !IsDrawnAnew(*record, item)) {
     return absl::FailedPreconditionError(absl::StrCat(
@@ -112,7 +104,7 @@ absl::Status Survey::Add(const Item& item) {
         ". Keep the leaders in their order and add new ones at the end, or use another --out"));
   }
   const std::optional<MadeBy> made_by = MadeByOf(*record);
-  if (made_by.has_value()) status = makers_.Check(record->model(), *made_by);
+  if (made_by.has_value()) status = CheckMaker(record->model(), *made_by);
   if (!status.ok() || !IsSettledNow(*record)) return status;
   const auto at = static_cast<size_t>(item.number);
   if (settled_.size() <= at) settled_.resize(at + 1);
@@ -120,15 +112,15 @@ absl::Status Survey::Add(const Item& item) {
   return absl::OkStatus();
 }
 
-absl::Status Survey::CheckLeader(const LeaderEntry& leader, const v1::IndexEntry& record) {
+absl::Status Survey::CheckRecorded(const LeaderEntry& leader, const v1::IndexEntry& record) {
   const std::string& sha256 = record.leader_sha256();
   if (sha256.empty()) return absl::OkStatus();
-  const bool first = !leaders_.Knows(leader);
-  absl::Status status = leaders_.Check(leader, sha256);
+  const bool first = !digests_.contains(KeyOfFile(leader));
+  absl::Status status = CheckLeader(leader, sha256);
   if (!status.ok() || !first) return status;
   // Only items that are not settled need a leader that no longer exists.
   const absl::StatusOr<std::string> now = base::Sha256HexOfFile(leader.file);
-  return now.ok() ? leaders_.Check(leader, *now) : absl::OkStatus();
+  return now.ok() ? CheckLeader(leader, *now) : absl::OkStatus();
 }
 
 bool Survey::IsSettledNow(const v1::IndexEntry& record) const {

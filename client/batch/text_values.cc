@@ -14,11 +14,11 @@ namespace {
 
 constexpr float kMaxAbsWeight = 2;
 
+}  // namespace
+
 absl::Status Expected(absl::string_view what, absl::string_view text) {
   return absl::InvalidArgumentError(absl::StrCat("expected ", what, ", got ", base::Quoted(text)));
 }
-
-}  // namespace
 
 absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text) {
   constexpr char kForm[] = "NAME, NAME@VERSION or NAME:LABEL";
@@ -36,10 +36,6 @@ absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text) {
     return Expected(absl::StrCat(kForm, ", a version being a number from 1"), text);
   }
   return choice;
-}
-
-std::string ModelText(const ModelChoice& model) {
-  return absl::StrCat(model.name, "@", model.version.value_or(0));
 }
 
 absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text) {

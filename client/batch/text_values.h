@@ -17,10 +17,10 @@ namespace duet::client::batch {
 // The syntax of values in recipes, manifests and flags. Errors: INVALID_ARGUMENT 'expected ..., got
 // "text"'.
 
+// 'expected <what>, got "<text>"'
+absl::Status Expected(absl::string_view what, absl::string_view text);
 // "NAME", "NAME@VERSION" or "NAME:LABEL"
 absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);
-// "NAME@VERSION". Requires a version.
-std::string ModelText(const ModelChoice& model);
 // "kick=1,hug=0.5", by class name. Each class once, weights within [-2, 2].
 absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text);
 // "left" or "right"

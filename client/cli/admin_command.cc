@@ -3,20 +3,33 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/admin_client.h"
+#include "absl/strings/strip.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "client/cli/command.h"
 #include "client/cli/flags.h"
 #include "client/cli/report.h"
 #include "client/cli/server.h"
 #include "client/error_details.h"
+#include "client/internal/connect.h"
+#include "client/internal/grpc_status.h"
+#include "client/internal/retry.h"
+#include "duet/admin/v1/admin.grpc.pb.h"
+#include "grpcpp/client_context.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
 namespace {
+
+namespace v1 = ::duet::admin::v1;
+using nlohmann::json;
+using Stub = v1::Admin::Stub;
 
 struct AdminArguments {
   enum class Action { kModels, kReload, kLoad, kUnload, kLabel };
@@ -36,86 +49,81 @@ struct AdminArguments {
   }
 };
 
-using nlohmann::json;
 using Action = AdminArguments::Action;
 
-const char* StateName(ServedVersion::State state) {
-  switch (state) {
-    case ServedVersion::State::kLoading:
-      return "loading";
-    case ServedVersion::State::kServed:
-      return "served";
-    case ServedVersion::State::kFailed:
-      return "failed";
-    case ServedVersion::State::kUnloaded:
-      return "unloaded";
-    case ServedVersion::State::kUnknown:
-      break;
-  }
-  return "unknown";
+// "served" for MODEL_STATE_SERVED.
+std::string StateName(v1::ModelState state) {
+  if (state == v1::MODEL_STATE_UNSPECIFIED) return "unknown";
+  return absl::AsciiStrToLower(absl::StripPrefix(v1::ModelState_Name(state), "MODEL_STATE_"));
 }
 
-std::string Describe(const ServedModels& models) {
+template <typename List>
+std::vector<std::string> Texts(const List& list) {
+  return {list.begin(), list.end()};
+}
+
+template <typename List>
+std::string Problems(const List& problems) {
   std::string text;
-  for (const ServedVersion& model : models.models) {
-    absl::StrAppend(&text, model.name, "/", model.version, "  ", StateName(model.state));
-    if (model.outdated) absl::StrAppend(&text, " (outdated: the files on disk were rejected)");
-    if (model.is_default) absl::StrAppend(&text, ", default");
-    if (!model.version_labels.empty()) {
-      absl::StrAppend(&text, ", labels: ", absl::StrJoin(model.version_labels, ", "));
+  for (const std::string& problem : problems) absl::StrAppend(&text, "problem: ", problem, "\n");
+  return text;
+}
+
+std::string Describe(const v1::ListModelsResponse& models) {
+  std::string text;
+  for (const v1::ModelVersion& model : models.models()) {
+    absl::StrAppend(&text, model.name(), "/", model.version(), "  ", StateName(model.state()));
+    if (model.outdated()) absl::StrAppend(&text, " (outdated: the files on disk were rejected)");
+    if (model.is_default()) absl::StrAppend(&text, ", default");
+    if (!model.version_labels().empty()) {
+      absl::StrAppend(&text, ", labels: ", absl::StrJoin(model.version_labels(), ", "));
     }
     absl::StrAppend(&text, "\n");
-    if (!model.error.empty()) absl::StrAppend(&text, "    ", model.error, "\n");
+    if (!model.error().empty()) absl::StrAppend(&text, "    ", model.error(), "\n");
   }
-  for (const SkippedFolder& folder : models.skipped_folders) {
-    absl::StrAppend(&text, folder.folder, "  skipped: ", folder.reason, "\n");
+  for (const v1::SkippedFolder& folder : models.skipped_folders()) {
+    absl::StrAppend(&text, folder.folder(), "  skipped: ", folder.reason(), "\n");
   }
-  for (const std::string& problem : models.problems) {
-    absl::StrAppend(&text, "problem: ", problem, "\n");
-  }
-  return text;
+  return text + Problems(models.problems());
 }
 
-json ToJson(const ServedModels& models) {
+json ToJson(const v1::ListModelsResponse& models) {
   json list = json::array();
-  for (const ServedVersion& model : models.models) {
-    list.push_back({{"name", model.name},
-                    {"version", model.version},
-                    {"state", StateName(model.state)},
-                    {"error", model.error},
-                    {"version_labels", model.version_labels},
-                    {"is_default", model.is_default},
-                    {"load_seconds", model.load_seconds},
-                    {"outdated", model.outdated}});
+  for (const v1::ModelVersion& model : models.models()) {
+    list.push_back({{"name", model.name()},
+                    {"version", model.version()},
+                    {"state", StateName(model.state())},
+                    {"error", model.error()},
+                    {"version_labels", Texts(model.version_labels())},
+                    {"is_default", model.is_default()},
+                    {"load_seconds", model.load_seconds()},
+                    {"outdated", model.outdated()}});
   }
   json skipped = json::array();
-  for (const SkippedFolder& folder : models.skipped_folders) {
-    skipped.push_back({{"folder", folder.folder}, {"reason", folder.reason}});
+  for (const v1::SkippedFolder& folder : models.skipped_folders()) {
+    skipped.push_back({{"folder", folder.folder()}, {"reason", folder.reason()}});
   }
-  return {{"models", list}, {"skipped_folders", skipped}, {"problems", models.problems}};
+  return {{"models", list}, {"skipped_folders", skipped}, {"problems", Texts(models.problems())}};
 }
 
-std::string Describe(const ReloadResult& result) {
+std::string Describe(const v1::ReloadResponse& result) {
   std::string text;
-  const auto add = [&text](absl::string_view what, const std::vector<std::string>& versions) {
+  const auto add = [&text](absl::string_view what, const auto& versions) {
     if (!versions.empty()) absl::StrAppend(&text, what, ": ", absl::StrJoin(versions, ", "), "\n");
   };
-  add("loaded", result.loaded);
-  add("refused", result.refused);
-  add("unloaded", result.unloaded);
-  absl::StrAppend(&text, "unchanged: ", result.unchanged, "\n");
-  for (const std::string& problem : result.problems) {
-    absl::StrAppend(&text, "problem: ", problem, "\n");
-  }
-  return text;
+  add("loaded", result.loaded());
+  add("refused", result.refused());
+  add("unloaded", result.unloaded());
+  absl::StrAppend(&text, "unchanged: ", result.unchanged_count(), "\n");
+  return text + Problems(result.problems());
 }
 
-json ToJson(const ReloadResult& result) {
-  return {{"loaded", result.loaded},
-          {"refused", result.refused},
-          {"unloaded", result.unloaded},
-          {"unchanged", result.unchanged},
-          {"problems", result.problems}};
+json ToJson(const v1::ReloadResponse& result) {
+  return {{"loaded", Texts(result.loaded())},
+          {"refused", Texts(result.refused())},
+          {"unloaded", Texts(result.unloaded())},
+          {"unchanged", result.unchanged_count()},
+          {"problems", Texts(result.problems())}};
 }
 
 template <typename Result>
@@ -123,39 +131,82 @@ void PrintResult(const Result& result, bool as_json, const ProgramEnvironment& e
   *environment.out << (as_json ? Print(ToJson(result)) : Describe(result));
 }
 
-// Runs an action without a result.
-absl::Status Act(const AdminArguments& arguments, AdminClient& client) {
-  switch (arguments.action) {
-    case Action::kLoad:
-      return client.LoadModel(arguments.name, arguments.version);
-    case Action::kUnload:
-      return client.UnloadModel(arguments.name, arguments.version);
-    case Action::kLabel:
-      return arguments.delete_label
-                 ? client.DeleteLabel(arguments.name, arguments.label)
-                 : client.SetLabel(arguments.name, arguments.label, arguments.version);
-    case Action::kModels:
-    case Action::kReload:
-      break;
+// Calls the admin service, without retries.
+class Caller {
+ public:
+  explicit Caller(ClientOptions options) : options_(std::move(options)) {}
+
+  absl::Status Open() {
+    absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = internal::OpenChannel(options_);
+    if (channel.ok()) stub_ = v1::Admin::NewStub(*std::move(channel));
+    return channel.status();
   }
-  return absl::OkStatus();
+
+  template <typename Request, typename Response>
+  absl::StatusOr<Response> Call(grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
+                                                             Response*),
+                                const Request& request) {
+    grpc::ClientContext context;
+    context.set_deadline(absl::ToChronoTime(absl::Now() + options_.deadline));
+    if (!options_.token.empty()) {
+      context.AddMetadata("authorization", absl::StrCat("Bearer ", options_.token));
+    }
+    Response response;
+    const absl::Status status =
+        internal::FromGrpc(((*stub_).*method)(&context, request, &response));
+    if (!status.ok()) return internal::Explained(status, options_.server_address);
+    return response;
+  }
+
+ private:
+  const ClientOptions options_;
+  std::unique_ptr<Stub> stub_;
+};
+
+// Runs an action without a result.
+absl::Status Act(const AdminArguments& arguments, Caller& caller) {
+  const auto about_model = [&arguments](auto request) {
+    request.set_name(arguments.name);
+    return request;
+  };
+  const auto about_version = [&](auto request) {
+    request.set_version(arguments.version);
+    return about_model(std::move(request));
+  };
+  if (arguments.action == Action::kLoad) {
+    return caller.Call(&Stub::LoadModel, about_version(v1::LoadModelRequest())).status();
+  }
+  if (arguments.action == Action::kUnload) {
+    return caller.Call(&Stub::UnloadModel, about_version(v1::UnloadModelRequest())).status();
+  }
+  if (arguments.action != Action::kLabel) return absl::OkStatus();
+  if (arguments.delete_label) {
+    auto request = about_model(v1::DeleteLabelRequest());
+    request.set_label(arguments.label);
+    return caller.Call(&Stub::DeleteLabel, request).status();
+  }
+  auto request = about_version(v1::SetLabelRequest());
+  request.set_label(arguments.label);
+  return caller.Call(&Stub::SetLabel, request).status();
 }
 
 absl::StatusOr<ExitCode> CallServer(const AdminArguments& arguments,
                                     const ProgramEnvironment& environment) {
   const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
-  const absl::StatusOr<std::unique_ptr<AdminClient>> client = environment.connect_admin(*options);
-  if (!client.ok()) return client.status();
+  Caller caller(*options);
+  absl::Status status = caller.Open();
+  if (!status.ok()) return status;
   if (arguments.action == Action::kReload) {
-    const absl::StatusOr<ReloadResult> result = (*client)->Reload();
+    const auto result = caller.Call(&Stub::Reload, v1::ReloadRequest());
     if (!result.ok()) return result.status();
     PrintResult(*result, arguments.json, environment);
-    return result->ok() ? kExitDone : kExitRetry;
+    // Whether the server serves everything that its configuration specifies.
+    return result->refused().empty() && result->problems().empty() ? kExitDone : kExitRetry;
   }
-  const absl::Status done = Act(arguments, **client);
-  if (!done.ok()) return done;
-  const absl::StatusOr<ServedModels> models = (*client)->ListModels();
+  status = Act(arguments, caller);
+  if (!status.ok()) return status;
+  const auto models = caller.Call(&Stub::ListModels, v1::ListModelsRequest());
   if (!models.ok()) return models.status();
   PrintResult(*models, arguments.json, environment);
   return kExitDone;

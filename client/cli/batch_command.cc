@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -89,11 +88,8 @@ struct BatchArguments {
 };
 
 // The leaders that the flags name.
-absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(const BatchArguments& arguments,
-                                                                 const batch::Recipe& recipe) {
-  if (arguments.manifest.empty()) {
-    return batch::ListLeaders(arguments.leaders, recipe.input.reading.format);
-  }
+absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(const BatchArguments& arguments) {
+  if (arguments.manifest.empty()) return batch::ListLeaders(arguments.leaders);
   auto file = std::make_unique<std::ifstream>(arguments.manifest);
   if (!file->is_open()) {
     return absl::NotFoundError(absl::StrCat(arguments.manifest, ": cannot be opened"));
@@ -102,16 +98,9 @@ absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(const BatchArgu
   return batch::ReadManifest(std::move(file), folder, arguments.manifest);
 }
 
-// What a run and a dry run share.
-struct Prepared {
-  batch::Recipe recipe;
-  std::vector<ModelInfo> models;
-  std::vector<motion::Skeleton> skeletons;
-};
-
 // Asks for the models that the set was begun with, or for the recipe's.
 absl::Status AskModels(const BatchArguments& arguments, const ProgramEnvironment& environment,
-                       const batch::JobIdentity& begun, Prepared* prepared) {
+                       const batch::v1::Job& begun, batch::SetSource* prepared) {
   absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
   options->deadline = options->wait =
@@ -119,7 +108,9 @@ absl::Status AskModels(const BatchArguments& arguments, const ProgramEnvironment
   const absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
   std::vector<ModelChoice> choices;
-  for (const batch::JobIdentity::Model& model : begun.models) choices.push_back(model.choice);
+  for (const batch::v1::Job::Model& model : begun.models()) {
+    choices.push_back(*batch::ParseModelChoice(model.name()));
+  }
   if (choices.empty()) choices = prepared->recipe.models;
   for (const ModelChoice& choice : choices) {
     absl::StatusOr<ModelDetails> details = client->GetModel(choice);
@@ -132,15 +123,19 @@ absl::Status AskModels(const BatchArguments& arguments, const ProgramEnvironment
   return absl::OkStatus();
 }
 
+absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments,
+                                     const batch::SetSource& prepared) {
+  absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders = OpenLeaders(arguments);
+  if (!leaders.ok()) return leaders.status();
+  return batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
+}
+
 // Checks every line of the manifest.
-absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments, const Prepared& prepared,
+absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
+                                       const batch::SetSource& prepared,
                                        const std::function<absl::Status(const batch::Item&)>& visit,
                                        const std::function<bool()>& stopped) {
-  absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
-      OpenLeaders(arguments, prepared.recipe);
-  if (!leaders.ok()) return leaders.status();
-  absl::StatusOr<batch::Plan> plan =
-      batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
+  absl::StatusOr<batch::Plan> plan = MakePlan(arguments, prepared);
   if (!plan.ok()) return plan.status();
   return CheckPlan({arguments.shard, arguments.limit}, &*plan, visit, stopped);
 }
@@ -148,7 +143,7 @@ absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments, const Pr
 // Reads the leader of each item, and reports once each that cannot be used.
 class LeaderReader {
  public:
-  LeaderReader(const Prepared& prepared, std::ostream& err)
+  LeaderReader(const batch::SetSource& prepared, std::ostream& err)
       : prepared_(prepared), leaders_(prepared.skeletons.size()), err_(err) {}
 
   absl::Status Read(const batch::Item& item) {
@@ -168,17 +163,16 @@ class LeaderReader {
   int64_t frames = 0;
 
  private:
-  const Prepared& prepared_;
+  const batch::SetSource& prepared_;
   batch::LastLeaders leaders_;
   std::ostream& err_;
   std::set<std::string> bad_;  // messages
 };
 
 absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
-                                const ProgramEnvironment& environment, Prepared prepared) {
-  const batch::JobIdentity begun =
-      batch::ReadJobIdentity(ShardFolder(arguments.out, arguments.shard))
-          .value_or(batch::JobIdentity());
+                                const ProgramEnvironment& environment, batch::SetSource prepared) {
+  const batch::v1::Job begun =
+      batch::ReadJob(ShardFolder(arguments.out, arguments.shard)).value_or(batch::v1::Job());
   const absl::Status status = AskModels(arguments, environment, begun, &prepared);
   if (!status.ok()) return status;
   LeaderReader reader(prepared, *environment.err);
@@ -195,42 +189,8 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                                                                          : kExitBadInput;
 }
 
-// The job that a signal stops. A signal may arrive before the job exists.
-//
-// Threads: safe to call concurrently.
-class RunningJob {
- public:
-  void Set(batch::Job* job) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    job_ = job;
-    if (stopped_ && job_ != nullptr) job_->Stop();
-  }
-  void Stop() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stopped_ = true;
-    if (job_ != nullptr) job_->Stop();
-  }
-  bool stopped() const { return stopped_; }
-
- private:
-  std::mutex mutex_;
-  batch::Job* job_ = nullptr;
-  std::atomic<bool> stopped_{false};
-};
-
 int64_t ItemsOfRun(const batch::Progress& progress) {
   return progress.done + progress.rejected + progress.failed + progress.unfinished;
-}
-
-double Rate(const batch::Progress& progress, double seconds) {
-  return seconds > 0 ? static_cast<double>(ItemsOfRun(progress)) / seconds : 0;
-}
-
-std::optional<double> SecondsLeft(const batch::Progress& progress, int64_t total, double seconds) {
-  const double rate = Rate(progress, seconds);
-  if (rate <= 0) return std::nullopt;
-  const int64_t left = total - progress.resumed - ItemsOfRun(progress);
-  return static_cast<double>(std::max<int64_t>(left, 0)) / rate;
 }
 
 std::string Clock(double seconds) {
@@ -239,23 +199,25 @@ std::string Clock(double seconds) {
   return absl::StrFormat("%d:%02d:%02d", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-void AddCount(const char* what, int64_t count, std::string* line) {
-  if (count > 0) absl::StrAppend(line, ", ", count, " ", what);
-}
-
 // One line about how far a run is: items, rate, time left, refusals and failures.
 std::string ProgressLine(const batch::Progress& progress, int64_t total, double seconds) {
-  std::string line = absl::StrCat(progress.resumed + ItemsOfRun(progress), " of ", total);
-  absl::StrAppendFormat(&line, " items, %.1f a second", Rate(progress, seconds));
-  if (const auto left = SecondsLeft(progress, total, seconds); left.has_value()) {
-    absl::StrAppend(&line, ", ", Clock(*left), " left");
+  const int64_t made = ItemsOfRun(progress), left = total - progress.resumed - made;
+  const double rate = seconds > 0 ? static_cast<double>(made) / seconds : 0;
+  std::string line =
+      absl::StrFormat("%d of %d items, %.1f a second", progress.resumed + made, total, rate);
+  if (rate > 0) {
+    absl::StrAppend(&line, ", ", Clock(static_cast<double>(std::max<int64_t>(left, 0)) / rate),
+                    " left");
   }
   absl::StrAppend(&line, ", ", progress.calls.in_flight, " of ", progress.calls.limit,
                   " calls at once");
-  AddCount("refusals", progress.calls.refusals, &line);
-  AddCount("rejected", progress.rejected, &line);
-  AddCount("failed", progress.failed, &line);
-  AddCount("unfinished", progress.unfinished, &line);
+  const std::pair<const char*, int64_t> counts[] = {{"refusals", progress.calls.refusals},
+                                                    {"rejected", progress.rejected},
+                                                    {"failed", progress.failed},
+                                                    {"unfinished", progress.unfinished}};
+  for (const auto& [what, count] : counts) {
+    if (count > 0) absl::StrAppend(&line, ", ", count, " ", what);
+  }
   return line;
 }
 
@@ -329,8 +291,7 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
   std::ostream& err = *environment.err;
   if (report.planned == 0) {
     err << "duet: the plan has no items: the list of leaders is empty, or --limit or --shard "
-           "leaves "
-           "none\n";
+           "leaves none\n";
   }
   if (set.failed > 0) {
     err << base::Counted(set.failed, "item") << " of "
@@ -347,7 +308,8 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
 
 absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job,
                                 const std::filesystem::path& folder, const batch::PlanCheck& check,
-                                const ProgramEnvironment& environment, const RunningJob& running) {
+                                const ProgramEnvironment& environment,
+                                const Stopper<batch::Job>& running) {
   absl::StatusOr<batch::JobReport> report;
   {
     std::optional<ProgressDisplay> display;
@@ -364,8 +326,8 @@ absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job
 
 // Opens the set, joins the shards of its job, and compares its models with the servers'.
 absl::Status OpenSet(const BatchArguments& arguments, const ProgramEnvironment& environment,
-                     batch::JobFolder* folder, batch::JobIdentity* begun, Prepared* prepared) {
-  const batch::JobIdentity wanted = IdentityOf(prepared->recipe, arguments.shard);
+                     batch::JobFolder* folder, batch::v1::Job* begun, batch::SetSource* prepared) {
+  const batch::v1::Job wanted = IdentityOf(prepared->recipe, arguments.shard);
   absl::Status status = folder->Open(wanted, begun);
   if (status.ok() && arguments.shard.count == 1) {
     const absl::StatusOr<batch::Gathered> gathered = GatherShards(wanted, *folder, begun);
@@ -377,15 +339,17 @@ absl::Status OpenSet(const BatchArguments& arguments, const ProgramEnvironment& 
   }
   if (status.ok()) status = AskModels(arguments, environment, *begun, prepared);
   if (!status.ok()) return status;
-  return CheckWeights(*begun, IdentityOf(prepared->recipe, arguments.shard, prepared->models));
+  return batch::CheckWeights(*begun,
+                             IdentityOf(prepared->recipe, arguments.shard, prepared->models));
 }
 
 absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
-                                  const ProgramEnvironment& environment, Prepared prepared) {
-  RunningJob running;
+                                  const ProgramEnvironment& environment,
+                                  batch::SetSource prepared) {
+  Stopper<batch::Job> running;
   const StopSignals signals([&running] { running.Stop(); });
   batch::JobFolder folder(ShardFolder(arguments.out, arguments.shard));
-  batch::JobIdentity begun;
+  batch::v1::Job begun;
   absl::Status status = OpenSet(arguments, environment, &folder, &begun, &prepared);
   if (!status.ok()) return status;
   const absl::StatusOr<std::unique_ptr<batch::Survey>> survey =
@@ -398,11 +362,7 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   status = BadLinesError(*check);
   if (!status.ok()) return status;
   if (running.stopped()) return kExitRetry;
-  absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
-      OpenLeaders(arguments, prepared.recipe);
-  if (!leaders.ok()) return leaders.status();
-  absl::StatusOr<batch::Plan> plan =
-      batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
+  absl::StatusOr<batch::Plan> plan = MakePlan(arguments, prepared);
   if (!plan.ok()) return plan.status();
   absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
@@ -410,14 +370,13 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
   // Until now, another recipe could still use the folder.
-  if (begun.models.empty()) {
+  if (begun.models().empty()) {
     status = folder.Begin(IdentityOf(prepared.recipe, arguments.shard, prepared.models));
   }
   if (!status.ok()) return status;
-  batch::Job job(
-      {std::move(prepared.recipe), arguments.shard, std::move(prepared.models),
-       std::move(prepared.skeletons), *std::move(client), &folder, survey->get(), check->items},
-      *std::move(plan), ToJobOptions(arguments));
+  batch::Job job({std::move(prepared), arguments.shard, *std::move(client), &folder, survey->get(),
+                  check->items},
+                 *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
       RunJob(arguments, job, folder.out(), *check, environment, running);
@@ -429,7 +388,7 @@ absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
                                   const ProgramEnvironment& environment) {
   const absl::Status inputs = batch::CheckInputs(arguments.leaders, arguments.out);
   if (!inputs.ok()) return inputs;
-  Prepared prepared;
+  batch::SetSource prepared;
   absl::StatusOr<batch::Recipe> recipe = batch::ReadRecipe(arguments.recipe);
   if (!recipe.ok()) return recipe.status();
   prepared.recipe = *std::move(recipe);
@@ -457,38 +416,30 @@ void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
   CLI::Option* leaders =
       app->add_option("leaders", arguments->leaders, "Motion files, and folders of them")
           ->type_name("LEADER");
-  app->add_option("--manifest", arguments->manifest,
-                  "List of leaders, tab-separated, one on each line")
-      ->excludes(leaders)
-      ->type_name("FILE")
-      ->group(kGroup);
-  app->add_option("--recipe", arguments->recipe,
-                  "Reactions and outputs for each leader: text format, or JSON in a .json file")
-      ->type_name("FILE")
-      ->group(kGroup);
-  app->add_option("--limit", arguments->limit, "Make only the first items of the plan")
-      ->check(CLI::Range(int64_t{0}, std::numeric_limits<int64_t>::max()))
-      ->type_name("COUNT")
-      ->group(kGroup);
-  AddParsed(app, "--shard", "INDEX/COUNT", batch::ParseShard, &arguments->shard,
-            "Make only this part of the items, in its own folder below --out; index from 0")
-      ->group(kGroup);
+  AddValue(app, kGroup, "--manifest", "FILE", &arguments->manifest,
+           "List of leaders, tab-separated, one on each line")
+      ->excludes(leaders);
+  AddValue(app, kGroup, "--recipe", "FILE", &arguments->recipe,
+           "Reactions and outputs for each leader: text format, or JSON in a .json file");
+  AddValue(app, kGroup, "--limit", "COUNT", &arguments->limit,
+           "Make only the first items of the plan")
+      ->check(CLI::Range(int64_t{0}, std::numeric_limits<int64_t>::max()));
+  AddParsed(app, kGroup, "--shard", "INDEX/COUNT", batch::ParseShard, &arguments->shard,
+            "Make only this part of the items, in its own folder below --out; index from 0");
 }
 
 void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
   static constexpr char kGroup[] = "Output";
-  app->add_option("--out", arguments->out, "Folder of the data set")
-      ->type_name("FOLDER")
-      ->group(kGroup);
+  AddValue(app, kGroup, "--out", "FOLDER", &arguments->out, "Folder of the data set");
   app->add_flag("--retry-failed", arguments->repeats.failed, "Retry items that failed permanently")
       ->group(kGroup);
   app->add_flag("--verify", arguments->repeats.changed,
                 "Read every file of earlier runs, and make those that were changed again")
       ->group(kGroup);
-  AddParsed(app, "--allow-failed", "COUNT|PERCENT%", ParseAllowedFailures, &arguments->allow_failed,
+  AddParsed(app, kGroup, "--allow-failed", "COUNT|PERCENT%", ParseAllowedFailures,
+            &arguments->allow_failed,
             "Exit with 0 although this many leaders, or this share of them, have items that failed "
-            "permanently")
-      ->group(kGroup);
+            "permanently");
   app->add_flag("--dry-run", arguments->dry_run,
                 "Check every line and every leader, and count items; writes nothing")
       ->group(kGroup);
@@ -496,25 +447,19 @@ void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
 }
 
 void AddFlowFlags(CLI::App* app, BatchArguments* arguments) {
-  app->add_option("--server", arguments->server.address,
-                  "Server, or any gRPC target such as dns:///pool:50051")
+  AddValue(app, kServerGroup, "--server", "HOST:PORT", &arguments->server.address,
+           "Server, or any gRPC target such as dns:///pool:50051")
       ->envname("DUET_SERVER")
-      ->capture_default_str()
-      ->type_name("HOST:PORT")
-      ->group(kServerGroup);
+      ->capture_default_str();
   AddConnectionFlags(app, &arguments->server);
-  app->add_option("--max-in-flight", arguments->max_in_flight,
-                  "Maximum number of concurrent calls; the actual number adapts")
+  AddValue(app, kServerGroup, "--max-in-flight", "COUNT", &arguments->max_in_flight,
+           "Maximum number of concurrent calls; the actual number adapts")
       ->check(base::InRange(1, 256))
-      ->capture_default_str()
-      ->type_name("COUNT")
-      ->group(kServerGroup);
-  app->add_option("--patience", arguments->patience_seconds,
-                  "Seconds for which the server may be away before the run ends")
+      ->capture_default_str();
+  AddValue(app, kServerGroup, "--patience", "SECONDS", &arguments->patience_seconds,
+           "Seconds for which the server may be away before the run ends")
       ->check(base::InRange(0.0, 86400.0))
-      ->capture_default_str()
-      ->type_name("SECONDS")
-      ->group(kServerGroup);
+      ->capture_default_str();
 }
 
 // Checks flags that depend on each other.

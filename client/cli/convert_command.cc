@@ -1,4 +1,3 @@
-#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -8,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/batch/text_values.h"
 #include "client/cli/command.h"
 #include "client/cli/flags.h"
 #include "client/cli/motion_input.h"
@@ -25,9 +25,6 @@ namespace {
 
 using formats::Format;
 
-// Which people of a file with two people to convert.
-enum class People { kLeft, kRight, kBoth };
-
 // The rig that a person is written onto, and how to read its file.
 struct RigArguments {
   std::filesystem::path file;  // empty: Duet's own rig
@@ -40,8 +37,8 @@ struct RigArguments {
 struct ConvertArguments {
   std::filesystem::path file;
   InputArguments input;
-  std::filesystem::path skeleton;  // empty: the 15 joints of sbu
-  std::optional<People> people;    // nullopt: all
+  std::filesystem::path skeleton;     // empty: the 15 joints of sbu
+  std::optional<formats::Side> side;  // nullopt: all people
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   double bvh_metres_per_unit = formats::kCentimetre;
@@ -50,14 +47,19 @@ struct ConvertArguments {
   bool quiet = false;
 };
 
-const std::map<std::string, People> kPeople = {
-    {"both", People::kBoth}, {"left", People::kLeft}, {"right", People::kRight}};
-
-const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
-                                                 {"metres", 1}};
+absl::StatusOr<double> ParseBvhUnit(absl::string_view text) {
+  if (text == "centimetres") return formats::kCentimetre;
+  if (text == "metres") return 1;
+  return batch::Expected("centimetres or metres", text);
+}
 
 using Clips = std::vector<motion::Clip>;
 using Paths = std::vector<std::filesystem::path>;
+
+struct WrittenFiles {
+  Paths files;
+  std::vector<std::string> notes;  // remarks on them
+};
 
 // A motion to write.
 struct Conversion {
@@ -70,17 +72,10 @@ struct Conversion {
   std::optional<formats::FollowerRig> rig;
 };
 
-absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
-  if (!wanted.has_value()) return absl::OkStatus();
-  if (*wanted == People::kBoth) {
-    if (people->size() == 2) return absl::OkStatus();
-    return absl::InvalidArgumentError(
-        "--side: expected left or right for a file with one person, got both");
-  }
-  // A file of one person is valid for both sides.
-  if (*wanted == People::kRight && people->size() > 1) std::swap((*people)[0], (*people)[1]);
+// A file of one person is valid for both sides.
+void ChoosePerson(formats::Side side, Clips* people) {
+  if (side == formats::Side::kRight && people->size() > 1) std::swap((*people)[0], (*people)[1]);
   people->resize(1);
-  return absl::OkStatus();
 }
 
 absl::StatusOr<formats::FollowerRig> ReadRig(const RigArguments& arguments,
@@ -114,13 +109,12 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments) {
   conversion.people = std::move(read->people);
   conversion.notes = std::move(read->notes);
   conversion.source_rate_hz = conversion.people[0].frame_rate_hz;
-  absl::Status status = ChoosePeople(arguments.people, &conversion.people);
+  if (arguments.side) ChoosePerson(*arguments.side, &conversion.people);
   for (motion::Clip& person : conversion.people) {
-    if (status.ok() && arguments.resample_hz) {
-      status = motion::ResampleByRate("--resample", *arguments.resample_hz, &person);
-    }
+    if (!arguments.resample_hz) break;
+    absl::Status status = motion::ResampleByRate("--resample", *arguments.resample_hz, &person);
+    if (!status.ok()) return status;
   }
-  if (!status.ok()) return status;
   if (!arguments.rig.file.empty() && conversion.people.size() > 1) {
     return absl::InvalidArgumentError(
         "--side: expected left or right with --rig for a file with two people, got both");
@@ -154,12 +148,10 @@ absl::StatusOr<WrittenFiles> Write(const Conversion& conversion,
                                    const std::filesystem::path& output) {
   const Format format = *formats::FormatOf(output);
   if (conversion.rig) return WriteOntoRig(conversion, output, format);
-  WrittenFiles written;
   absl::StatusOr<Paths> files = formats::WritePeople(output, format, conversion.people,
                                                      conversion.skeleton, conversion.writing);
   if (!files.ok()) return NotWritten(files.status());
-  written.files = *std::move(files);
-  return written;
+  return WrittenFiles{*std::move(files), {}};
 }
 
 std::string Describe(const Conversion& conversion, const std::vector<WrittenFiles>& written) {
@@ -241,27 +233,26 @@ void CheckTogether(const ConvertArguments& arguments) {
 }
 
 void AddRigFlags(CLI::App* app, RigArguments* rig) {
-  CLI::Option* file = app->add_option("--rig", rig->file,
-                                      absl::StrCat("File whose rig the person is written onto, ",
-                                                   formats::kRigExtensions,
-                                                   "; --out has its format (default: Duet's rig)"))
-                          ->type_name("FILE");
-  CLI::Option* const reading[] = {
-      AddChoice(app, "--rig-side", kSides, &rig->side, "The person in a --rig file with two people")
-          ->default_str(NameOf(kSides, rig->side)),
-      AddParsed(app, "--rig-up-axis", "y-up|z-up|y-down", ParseAxis, &rig->up_axis,
-                "Up axis of the rig; overrides the file"),
-      app->add_option("--rig-metres-per-unit", rig->metres_per_unit,
-                      "Metres in one unit of the rig (0.01 for centimetres)")
-          ->check(AboveZero())
-          ->type_name("METRES"),
-      app->add_option("--rig-joint-map", rig->joint_map,
-                      "Joint of the rig for a joint of the model, if its name is not recognised, "
-                      "or a file with one such pair on each line; repeatable")
-          ->allow_extra_args(false)
-          ->type_name("MODEL_JOINT=RIG_JOINT|FILE")};
-  file->group(kOutputGroup);
-  for (CLI::Option* flag : reading) flag->needs(file)->group(kOutputGroup);
+  CLI::Option* file =
+      AddValue(app, kOutputGroup, "--rig", "FILE", &rig->file,
+               absl::StrCat("File whose rig the person is written onto, ", formats::kRigExtensions,
+                            "; --out has its format (default: Duet's rig)"));
+  AddParsed(app, kOutputGroup, "--rig-side", "left|right", batch::ParseSide, &rig->side,
+            "The person in a --rig file with two people")
+      ->default_str("left")
+      ->needs(file);
+  AddParsed(app, kOutputGroup, "--rig-up-axis", "y-up|z-up|y-down", ParseAxis, &rig->up_axis,
+            "Up axis of the rig; overrides the file")
+      ->needs(file);
+  AddValue(app, kOutputGroup, "--rig-metres-per-unit", "METRES", &rig->metres_per_unit,
+           "Metres in one unit of the rig (0.01 for centimetres)")
+      ->check(AboveZero())
+      ->needs(file);
+  AddValue(app, kOutputGroup, "--rig-joint-map", "MODEL_JOINT=RIG_JOINT|FILE", &rig->joint_map,
+           "Joint of the rig for a joint of the model, if its name is not recognised, or a file "
+           "with one such pair on each line; repeatable")
+      ->allow_extra_args(false)
+      ->needs(file);
 }
 
 void AddFlags(CLI::App* command, ConvertArguments* arguments) {
@@ -269,34 +260,26 @@ void AddFlags(CLI::App* command, ConvertArguments* arguments) {
       ->add_option("file", arguments->file, absl::StrCat("Motion: ", formats::kReadableExtensions))
       ->required()
       ->type_name("FILE");
-  AddChoice(command, "--side", kPeople, &arguments->people, "The people to write (default: all)")
-      ->group(kInputGroup);
+  AddParsed(command, kInputGroup, "--side", "left|right", batch::ParseSide, &arguments->side,
+            "The person to write (default: all)");
   AddInputFlags(command, &arguments->input);
   AddSkeletonFlag(command, &arguments->skeleton);
-  command
-      ->add_option("--out", arguments->outputs,
-                   absl::StrCat("File to write: ", formats::kWritableExtensions,
-                                ", of which .bvh makes a file for each person; repeatable"))
+  AddValue(command, kOutputGroup, "--out", "FILE", &arguments->outputs,
+           absl::StrCat("File to write: ", formats::kWritableExtensions,
+                        ", of which .bvh makes a file for each person; repeatable"))
       ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  command
-      ->add_option(
-          "--resample", arguments->resample_hz,
-          "Frame rate of the output; the motion keeps its speed (--frame-rate sets the rate "
-          "of the input)")
-      ->check(AboveZero())
-      ->type_name("HZ")
-      ->group(kOutputGroup);
-  AddChoice(command, "--bvh-unit", kBvhUnits, &arguments->bvh_metres_per_unit,
+      ->allow_extra_args(false);
+  AddValue(command, kOutputGroup, "--resample", "HZ", &arguments->resample_hz,
+           "Frame rate of the output; the motion keeps its speed (--frame-rate sets the rate "
+           "of the input)")
+      ->check(AboveZero());
+  AddParsed(command, kOutputGroup, "--bvh-unit", "centimetres|metres", ParseBvhUnit,
+            &arguments->bvh_metres_per_unit,
             "Unit of .bvh output, which the format does not state: Maya, MotionBuilder and Unreal "
             "expect centimetres, Blender metres")
-      ->default_str("centimetres")
-      ->group(kOutputGroup);
+      ->default_str("centimetres");
   AddRigFlags(command, &arguments->rig);
-  command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
-  command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+  AddSummaryFlags(command, kOutputGroup, &arguments->json, &arguments->quiet);
   command->callback([arguments] { CheckTogether(*arguments); });
 }
 

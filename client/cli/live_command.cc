@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -128,35 +126,10 @@ absl::StatusOr<std::vector<std::string>> LiveFileSink::Finish(const LiveInfo& in
   synthesis.skeleton = skeleton_;
   synthesis.leader_file = leader_file_;
   synthesis.sampled = true;
-  const absl::StatusOr<WrittenFiles> written = WriteFollower(path_, synthesis);
-  if (!written.ok()) return NotWritten(written.status());
-  std::vector<std::string> lines;
-  for (const std::filesystem::path& file : written->files) lines.push_back(file.string());
-  for (const std::string& note : written->notes) {
-    lines.push_back(absl::StrCat(path_.filename().string(), ": ", note));
-  }
-  return lines;
+  const absl::Status written = WriteFollower(path_, synthesis);
+  if (!written.ok()) return NotWritten(written);
+  return std::vector<std::string>{path_.string()};
 }
-
-// Stops a source that may not exist yet.
-class Stopper {
- public:
-  void Stop() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stopped_ = true;
-    if (source_ != nullptr) source_->Stop();
-  }
-  void SetSource(live::LeaderSource* source) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    source_ = source;
-    if (stopped_ && source_ != nullptr) source_->Stop();
-  }
-
- private:
-  std::mutex mutex_;
-  live::LeaderSource* source_ = nullptr;
-  bool stopped_ = false;
-};
 
 // Prints what happened to the connection.
 void ShowNotice(const LiveNotice& notice, std::ostream& err) {
@@ -210,14 +183,10 @@ absl::StatusOr<std::unique_ptr<live::LeaderSource>> OpenSource(
     return std::make_unique<live::ClipSource>(std::move(request->leader), arguments.realtime,
                                               std::move(notes));
   }
-  if (environment.in == nullptr) {
-    return absl::InvalidArgumentError("--from -: expected a standard input, got none");
-  }
   absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(arguments.input.joint_map);
   if (!joints.ok()) return joints.status();
   return std::make_unique<live::JsonLinesSource>(
-      environment.in_descriptor.has_value() ? live::ReadLinesOf(*environment.in_descriptor)
-                                            : live::ReadLinesOf(*environment.in),
+      environment.in_descriptor,
       live::JsonLinesOptions{skeleton, *std::move(joints), arguments.realtime});
 }
 
@@ -233,7 +202,8 @@ std::unique_ptr<live::FollowerSink> OpenSink(const std::string& to, const LiveAr
 
 absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments,
                                             SynthesisRequest request, const Client& client,
-                                            const motion::Skeleton& skeleton, Stopper* stopper,
+                                            const motion::Skeleton& skeleton,
+                                            Stopper<live::LeaderSource>* stopper,
                                             const ProgramEnvironment& environment) {
   const absl::StatusOr<std::unique_ptr<live::LeaderSource>> source =
       OpenSource(arguments, skeleton, environment, &request);
@@ -249,9 +219,9 @@ absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments,
     on_notice = [&environment](const LiveNotice& notice) { ShowNotice(notice, *environment.err); };
   }
   live::LiveRun run(source->get(), std::move(ends), std::move(on_notice));
-  stopper->SetSource(source->get());
+  stopper->Set(source->get());
   absl::StatusOr<live::LiveReport> report = run.Run(client, ToLiveRequest(request, arguments));
-  stopper->SetSource(nullptr);
+  stopper->Set(nullptr);
   return report;
 }
 
@@ -324,24 +294,13 @@ std::string LiveJson(const live::LiveReport& report) {
 }
 
 absl::Status RunLive(const LiveArguments& arguments, const ProgramEnvironment& environment) {
-  Stopper stopper;
+  Stopper<live::LeaderSource> stopper;
   const StopSignals signals([&stopper] { stopper.Stop(); });
-  const absl::Status inputs = CheckInputs(arguments);
-  if (!inputs.ok()) return inputs;
-  absl::StatusOr<SynthesisRequest> request = StartRequest(arguments);
-  if (!request.ok()) return request.status();
-  const absl::Status fields = CheckLiveFields(*request);
-  if (!fields.ok()) return fields;
-  const absl::StatusOr<Client> client = Connect(arguments.server, environment);
-  if (!client.ok()) return client.status();
-  const absl::StatusOr<ModelDetails> details = client->GetModel(request->model);
-  if (!details.ok()) return details.status();
-  const absl::Status labels = CheckLabels(*request, details->model);
-  if (!labels.ok()) return labels;
-  const absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
-  if (!skeleton.ok()) return skeleton.status();
-  const absl::StatusOr<live::LiveReport> report =
-      RunSession(arguments, *std::move(request), *client, *skeleton, &stopper, environment);
+  absl::StatusOr<PreparedCall> call =
+      PrepareCall(arguments, arguments.server, CheckLiveFields, environment);
+  if (!call.ok()) return call.status();
+  const absl::StatusOr<live::LiveReport> report = RunSession(
+      arguments, std::move(call->request), call->client, call->skeleton, &stopper, environment);
   if (!report.ok()) return report.status();
   if (arguments.quiet) return absl::OkStatus();
   // With frames on standard output, the summary goes to standard error.
@@ -395,42 +354,33 @@ Example:
 )";
 
 void AddFlags(CLI::App* app, LiveArguments* arguments) {
-  app->add_option("--from", arguments->from,
-                  "Leader: a motion file that synthesize reads, or - for lines of JSON on standard "
-                  "input")
-      ->required()
-      ->type_name("FILE|-")
-      ->group(kInputGroup);
+  AddValue(app, kInputGroup, "--from", "FILE|-", &arguments->from,
+           "Leader: a motion file that synthesize reads, or - for lines of JSON on standard "
+           "input")
+      ->required();
   app->add_flag("--realtime", arguments->realtime,
                 "Play the file at its frame rate, and take standard input as it comes; otherwise "
                 "each frame waits for the answer to the one before")
       ->group(kInputGroup);
   AddLeaderFlags(app, arguments);
   AddReactionFlags(app, arguments);
-  app->add_option("--delay", arguments->delay_frames,
-                  "Leader frames that the server waits for before it answers a frame, from 0 to "
-                  "10; a few give a better reaction")
+  AddValue(app, kReactionGroup, "--delay", "FRAMES", &arguments->delay_frames,
+           "Leader frames that the server waits for before it answers a frame, from 0 to "
+           "10; a few give a better reaction")
       ->check(base::InRange(0, 10))
-      ->capture_default_str()
-      ->type_name("FRAMES")
-      ->group(kReactionGroup);
-  app->add_option("--plan", arguments->plan_frames,
-                  "Provisional frames, from 0 to 30, beyond each final one, for outputs that can "
-                  "show them")
+      ->capture_default_str();
+  AddValue(app, kReactionGroup, "--plan", "FRAMES", &arguments->plan_frames,
+           "Provisional frames, from 0 to 30, beyond each final one, for outputs that can "
+           "show them")
       ->check(base::InRange(0, 30))
-      ->capture_default_str()
-      ->type_name("FRAMES")
-      ->group(kReactionGroup);
-  app->add_option("--to", arguments->to,
-                  "Where the follower goes: a motion file with the follower as its only person, a "
-                  "page with both people (.html), or - for lines of JSON on standard output; "
-                  "repeatable")
+      ->capture_default_str();
+  AddValue(app, kOutputGroup, "--to", "FILE|-", &arguments->to,
+           "Where the follower goes: a motion file with the follower as its only person, a "
+           "page with both people (.html), or - for lines of JSON on standard output; "
+           "repeatable")
       ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE|-")
-      ->group(kOutputGroup);
-  app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
-  app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+      ->allow_extra_args(false);
+  AddSummaryFlags(app, kOutputGroup, &arguments->json, &arguments->quiet);
   AddServerFlags(app, &arguments->server);
   app->footer(kFooter);
   app->callback([arguments] {

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   setenv("GRPC_VERBOSITY", "NONE", 0);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const int code = duet::client::cli::RunProgram(
-      arguments, {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin,
-                  isatty(STDERR_FILENO) == 1, STDIN_FILENO});
+      arguments, {duet::client::Client::Create, &std::cout, &std::cerr, STDIN_FILENO,
+                  isatty(STDERR_FILENO) == 1});
   return duet::base::FinishOutput("duet", code);
 }

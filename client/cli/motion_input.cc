@@ -95,14 +95,6 @@ absl::StatusOr<motion::Skeleton> ParseSkeleton(absl::string_view text) {
   skeleton.joint_names = reader.UniqueStrings("joint_names", motion::kMaxFileJoints, kMaxNameBytes);
   skeleton.bones = ReadBones(skeleton.joint_names.size(), &reader);
   if (reader.ok()) skeleton.root = RootOf(skeleton.bones, skeleton.joint_names.size());
-  if (reader.Has("root_joint")) {
-    const std::string root = reader.String("root_joint", kMaxNameBytes);
-    skeleton.root = skeleton.Find(root);
-    if (skeleton.root < 0) {
-      reader.Fail("root_joint",
-                  absl::StrCat("expected one of joint_names, got ", base::Quoted(root)));
-    }
-  }
   if (!reader.ok()) return reader.status();
   absl::Status status = Validate(skeleton);
   if (!status.ok()) return status;
@@ -111,9 +103,6 @@ absl::StatusOr<motion::Skeleton> ParseSkeleton(absl::string_view text) {
 }
 
 }  // namespace
-
-const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLeft},
-                                                     {"right", formats::Side::kRight}};
 
 absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text) {
   return Known(motion::ParseLengthUnit(text), motion::kLengthUnitNames, text);
@@ -124,40 +113,29 @@ absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text) {
 }
 
 void AddReadingFlags(CLI::App* app, InputArguments* input) {
-  AddParsed(app, "--input-format", "FORMAT", ParseInputFormat, &input->format,
+  AddParsed(app, kInputGroup, "--input-format", "FORMAT", ParseInputFormat, &input->format,
             absl::StrCat("Format of the input: ", formats::kReadableFormatNames,
-                         "; overrides the extension"))
-      ->group(kInputGroup);
-  app->add_option("--frame-rate", input->frame_rate_hz,
-                  "Frame rate of the input; overrides the file")
-      ->check(AboveZero())
-      ->type_name("HZ")
-      ->group(kInputGroup);
-  app->add_option("--metres-per-unit", input->metres_per_unit,
-                  "Metres in one unit of the file (0.01 for centimetres); overrides the file")
-      ->check(AboveZero())
-      ->type_name("METRES")
-      ->group(kInputGroup);
-  app->add_option("--joint-map", input->joint_map,
-                  "Joint of the file for a joint of the model, if its name is not recognised, or a "
-                  "file with one such pair on each line; repeatable")
-      ->allow_extra_args(false)
-      ->type_name("MODEL_JOINT=FILE_JOINT|FILE")
-      ->group(kInputGroup);
+                         "; overrides the extension"));
+  AddValue(app, kInputGroup, "--frame-rate", "HZ", &input->frame_rate_hz,
+           "Frame rate of the input; overrides the file")
+      ->check(AboveZero());
+  AddValue(app, kInputGroup, "--metres-per-unit", "METRES", &input->metres_per_unit,
+           "Metres in one unit of the file (0.01 for centimetres); overrides the file")
+      ->check(AboveZero());
+  AddValue(app, kInputGroup, "--joint-map", "MODEL_JOINT=FILE_JOINT|FILE", &input->joint_map,
+           "Joint of the file for a joint of the model, if its name is not recognised, or a "
+           "file with one such pair on each line; repeatable")
+      ->allow_extra_args(false);
 }
 
 void AddInputFlags(CLI::App* app, InputArguments* input) {
   AddReadingFlags(app, input);
-  AddParsed(app, "--unit", "metres|millimetres|sbu-normalised", ParseUnit, &input->unit,
-            "Unit of positions; overrides the file")
-      ->group(kInputGroup);
-  AddParsed(app, "--up-axis", "y-up|z-up|y-down", ParseAxis, &input->up_axis,
-            "Up axis of positions; overrides the file")
-      ->group(kInputGroup);
-  app->add_option("--animation", input->animation,
-                  "The animation of a file with several (default: the first that moves the person)")
-      ->type_name("NAME")
-      ->group(kInputGroup);
+  AddParsed(app, kInputGroup, "--unit", "metres|millimetres|sbu-normalised", ParseUnit,
+            &input->unit, "Unit of positions; overrides the file");
+  AddParsed(app, kInputGroup, "--up-axis", "y-up|z-up|y-down", ParseAxis, &input->up_axis,
+            "Up axis of positions; overrides the file");
+  AddValue(app, kInputGroup, "--animation", "NAME", &input->animation,
+           "The animation of a file with several (default: the first that moves the person)");
 }
 
 absl::StatusOr<motion::Clip> ReadMotion(const std::filesystem::path& file,
@@ -226,11 +204,9 @@ absl::StatusOr<motion::Skeleton> SkeletonOf(const std::filesystem::path& file) {
 }
 
 void AddSkeletonFlag(CLI::App* app, std::filesystem::path* file) {
-  app->add_option("--skeleton", *file,
-                  "Joints to read: a motion in .json, or a model that duet models --json prints "
-                  "(default: the 15 joints of sbu)")
-      ->type_name("FILE")
-      ->group(kInputGroup);
+  AddValue(app, kInputGroup, "--skeleton", "FILE", file,
+           "Joints to read: a motion in .json, or a model that duet models --json prints "
+           "(default: the 15 joints of sbu)");
 }
 
 }  // namespace duet::client::cli

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +21,6 @@ namespace duet::client::cli {
 
 // The person who is read by default from a file with two people.
 inline constexpr formats::Side kDefaultSide = formats::Side::kLeft;
-extern const std::map<std::string, formats::Side> kSides;
 
 inline constexpr char kInputGroup[] = "Input";
 inline constexpr char kOutputGroup[] = "Output";
@@ -62,10 +60,10 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
                                                    const motion::Skeleton& skeleton);
 
 // The skeleton of `file`, or the 15 joints of sbu if it is empty. The file has a JSON object with
-// the fields `joint_names`, `bones` (pairs of indices, parent and child) and `root_joint`: one of
-// the models that `duet models --json` prints, or a motion in duet-motion JSON. Without
-// `root_joint`, the root is the joint that is no bone's child. Other fields are ignored. Errors:
-// INVALID_ARGUMENT naming the file and the field; those of reading a file.
+// the fields `joint_names` and `bones` (pairs of indices, parent and child): one of the models that
+// `duet models --json` prints, or a motion in duet-motion JSON. The root is the joint that is no
+// bone's child. Other fields are ignored. Errors: INVALID_ARGUMENT naming the file and the field;
+// those of reading a file.
 absl::StatusOr<motion::Skeleton> SkeletonOf(const std::filesystem::path& file);
 // --skeleton, for commands that read motions without a server.
 void AddSkeletonFlag(CLI::App* app, std::filesystem::path* file);

@@ -133,35 +133,26 @@ absl::Status CheckCanCreate(const std::filesystem::path& output) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
-                                         const Synthesis& synthesis) {
+absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
+                                                               const Synthesis& synthesis) {
   if (!IsPage(output)) {
     const motion::Provenance provenance = ProvenanceOf(synthesis);
-    WrittenFiles written;
-    absl::StatusOr<std::vector<std::filesystem::path>> files = formats::WritePair(
-        output, synthesis.result.pair, synthesis.skeleton, WritingOf(synthesis, provenance));
-    if (!files.ok()) return files.status();
-    written.files = *std::move(files);
-    return written;
+    return formats::WritePair(output, synthesis.result.pair, synthesis.skeleton,
+                              WritingOf(synthesis, provenance));
   }
   const absl::StatusOr<std::string> page = RenderSynthesis(synthesis);
   if (!page.ok()) return page.status();
   absl::Status status = base::WriteFile(output, *page);
   if (!status.ok()) return status;
-  return WrittenFiles{{output}, {}};
+  return std::vector<std::filesystem::path>{output};
 }
 
-absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
-                                           const Synthesis& synthesis) {
-  if (IsPage(output)) return WriteOutput(output, synthesis);
+absl::Status WriteFollower(const std::filesystem::path& output, const Synthesis& synthesis) {
+  if (IsPage(output)) return WriteOutput(output, synthesis).status();
   const motion::Provenance provenance = ProvenanceOf(synthesis);
-  WrittenFiles written;
-  absl::StatusOr<std::vector<std::filesystem::path>> files =
-      formats::WritePeople(output, *formats::FormatOf(output), {synthesis.result.pair.follower},
-                           synthesis.skeleton, WritingOf(synthesis, provenance));
-  if (!files.ok()) return files.status();
-  written.files = *std::move(files);
-  return written;
+  return formats::WritePeople(output, *formats::FormatOf(output), {synthesis.result.pair.follower},
+                              synthesis.skeleton, WritingOf(synthesis, provenance))
+      .status();
 }
 
 absl::Status NotWritten(const absl::Status& status) {

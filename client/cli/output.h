@@ -41,16 +41,11 @@ absl::Status CheckCanCreate(const std::filesystem::path& output);
 // The output, and the files that WriteOutput may write in place of it.
 std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output);
 
-struct WrittenFiles {
-  std::vector<std::filesystem::path> files;
-  std::vector<std::string> notes;  // remarks on them
-};
 // Writes the pair as the extension says, whole files or none, and returns them (.bvh makes two).
-absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
-                                         const Synthesis& synthesis);
+absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
+                                                               const Synthesis& synthesis);
 // Writes only the follower, as one file; a page shows both.
-absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
-                                           const Synthesis& synthesis);
+absl::Status WriteFollower(const std::filesystem::path& output, const Synthesis& synthesis);
 // ABORTED instead of PERMISSION_DENIED: a disk may be full or a folder closed for a while, so the
 // same call may succeed later.
 absl::Status NotWritten(const absl::Status& status);

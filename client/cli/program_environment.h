@@ -3,13 +3,10 @@
 
 #include <functional>
 #include <iosfwd>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/admin_client.h"
 #include "client/client.h"
 
 namespace duet::client::cli {
@@ -19,12 +16,8 @@ struct ProgramEnvironment {
   std::function<absl::StatusOr<Client>(const ClientOptions&)> connect;
   std::ostream* out;
   std::ostream* err;
-  std::istream* in = nullptr;    // what `-` reads; null: no standard input
+  int in_descriptor = 0;         // what `-` reads
   bool err_is_terminal = false;  // then progress is updated in place
-  // The file descriptor of `in`, for reading that a signal can interrupt. Absent in tests.
-  std::optional<int> in_descriptor = std::nullopt;
-  std::function<absl::StatusOr<std::unique_ptr<AdminClient>>(const ClientOptions&)> connect_admin =
-      AdminClient::Create;
 };
 
 // Runs the whole `duet` program: parses, calls, writes and prints. Returns its exit code

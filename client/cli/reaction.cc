@@ -1,10 +1,8 @@
 #include "client/cli/reaction.h"
 
 #include <algorithm>
-#include <limits>
 #include <system_error>
 #include <utility>
-#include <variant>
 
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
@@ -12,6 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "client/cli/flags.h"
+#include "client/model_skeleton.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/base/file.h"
 #include "model/base/nearest.h"
@@ -24,10 +23,7 @@
 namespace duet::client::cli {
 namespace {
 
-absl::Status Expected(absl::string_view expected, absl::string_view text) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("expected ", expected, ", got ", base::Quoted(text)));
-}
+using batch::Expected;
 
 absl::StatusOr<float> ParseVariety(absl::string_view text) {
   float variety = 0;
@@ -107,26 +103,6 @@ std::vector<motion::Vec3> ToPoints(const google::protobuf::RepeatedField<float>&
   return points;
 }
 
-absl::StatusOr<motion::Clip> FromProto(const v1::Motion& leader) {
-  if (leader.unit() != v1::LENGTH_UNIT_METRES) {
-    return Refused("leader.unit", "LENGTH_UNIT_METRES", v1::LengthUnit_Name(leader.unit()));
-  }
-  if (leader.up_axis() != v1::UP_AXIS_Y_UP) {
-    return Refused("leader.up_axis", "UP_AXIS_Y_UP", v1::UpAxis_Name(leader.up_axis()));
-  }
-  const std::size_t floats =
-      std::size_t{leader.frame_count()} * 3 * static_cast<std::size_t>(leader.joint_names_size());
-  if (static_cast<std::size_t>(leader.positions_size()) != floats) {
-    return Refused("leader.positions", absl::StrCat(floats, " values (3 for each joint and frame)"),
-                   absl::StrCat(leader.positions_size()));
-  }
-  motion::Clip clip;
-  clip.joint_names = {leader.joint_names().begin(), leader.joint_names().end()};
-  clip.frame_rate_hz = leader.frame_rate_hz();
-  clip.poses = motion::Poses(leader.joint_names_size(), ToPoints(leader.positions()));
-  return clip;
-}
-
 std::vector<ClassWeight> FromProto(const v1::LabelVector& labels) {
   std::vector<ClassWeight> weights;
   for (const v1::ClassWeight& weight : labels.weights()) {
@@ -171,15 +147,11 @@ absl::StatusOr<SynthesisRequest> FromProto(const v1::SynthesizeRequest& in) {
     return Refused("reply_joint_names", "none: every output needs all joints",
                    absl::StrCat(in.reply_joint_names_size()));
   }
+  if (in.has_leader()) return Refused("leader", "none: a flag names its file", "one");
   SynthesisRequest out;
   const absl::Status options = FillOptions(in, &out);
   if (!options.ok()) return options;
   out.model = FromProto(in.model());
-  if (in.has_leader()) {
-    absl::StatusOr<motion::Clip> leader = FromProto(in.leader());
-    if (!leader.ok()) return leader.status();
-    out.leader = *std::move(leader);
-  }
   out.weights = FromProto(in.label_vector());
   for (const v1::LabelKeyframe& keyframe : in.label_keyframes()) {
     out.keyframes.push_back(
@@ -197,52 +169,72 @@ absl::Status InFile(const std::filesystem::path& file, const absl::Status& statu
   return {status.code(), absl::StrCat(file.string(), ": ", status.message())};
 }
 
+// Needs no skeleton, so that a wrong name is rejected before the first call to the server.
+absl::Status CheckInputs(const ReactionArguments& arguments) {
+  absl::Status status = ReadJoints(arguments.input.joint_map).status();
+  if (status.ok() && !arguments.leader.empty()) {
+    status = formats::CheckReadable(arguments.leader, arguments.input.format);
+  }
+  const std::string& start = arguments.follower_start;
+  if (!status.ok() || start.empty() || batch::ParsePoint(start).has_value()) return status;
+  status = formats::CheckReadable(start, std::nullopt);
+  if (!absl::IsNotFound(status)) return status;
+  return absl::NotFoundError(
+      absl::StrCat("--follower-start: ", status.message(), "; expected a motion file or X,Y,Z"));
+}
+
+// Rejects a class that the model does not know and suggests the nearest name.
+absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model) {
+  std::vector<ClassWeight> weights = request.weights;
+  for (const WeightKeyframe& keyframe : request.keyframes) {
+    weights.insert(weights.end(), keyframe.weights.begin(), keyframe.weights.end());
+  }
+  const std::vector<std::string>& known = model.interaction_classes;
+  for (const ClassWeight& weight : weights) {
+    const std::string& name = weight.interaction_class;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(request.keyframes.empty() ? "label" : "keyframe", ": class: expected one of ",
+                     model.name, " (", absl::StrJoin(known, ", "), "), got ", base::Quoted(name),
+                     base::DidYouMean(name, known)));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 void AddReactionFlags(CLI::App* app, ReactionArguments* arguments) {
-  app->add_option("--request", arguments->request,
-                  "File with a request: the protobuf message duet.v1.SynthesizeRequest in text "
-                  "format, with fields that have no flag too; flags override it")
-      ->type_name("FILE")
-      ->group(kReactionGroup);
-  CLI::Option* label =
-      AddParsedList(app, "--label", "CLASS[=WEIGHT]", ParseClassWeight, &arguments->weights,
-                    "Weight of an interaction class, such as kick=1 or hug=-0.5; repeatable")
-          ->group(kReactionGroup);
-  AddParsedList(app, "--keyframe", "FRAME:CLASS[=WEIGHT],...", ParseKeyframe, &arguments->keyframes,
+  AddValue(app, kReactionGroup, "--request", "FILE", &arguments->request,
+           "File with a request: the protobuf message duet.v1.SynthesizeRequest in text "
+           "format, with fields that have no flag too; flags override it");
+  CLI::Option* label = AddParsedList(
+      app, kReactionGroup, "--label", "CLASS[=WEIGHT]", ParseClassWeight, &arguments->weights,
+      "Weight of an interaction class, such as kick=1 or hug=-0.5; repeatable");
+  AddParsedList(app, kReactionGroup, "--keyframe", "FRAME:CLASS[=WEIGHT],...", ParseKeyframe,
+                &arguments->keyframes,
                 "Weights from a frame on, for weights that change over time; repeatable")
-      ->excludes(label)
-      ->group(kReactionGroup);
-  AddParsed(app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice, &arguments->model,
-            "Model to use (default: the server's default model)")
-      ->group(kReactionGroup);
-  app->add_option("--follower-start", arguments->follower_start,
-                  "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
-                  "joint in metres, y up; Y is about 1 above the floor for a person who stands")
-      ->type_name("FILE|X,Y,Z")
-      ->group(kReactionGroup);
-  AddParsed(app, "--seed", "SEED", ParseSeed, &arguments->seed,
+      ->excludes(label);
+  AddParsed(app, kReactionGroup, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
+            &arguments->model, "Model to use (default: the server's default model)");
+  AddValue(app, kReactionGroup, "--follower-start", "FILE|X,Y,Z", &arguments->follower_start,
+           "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
+           "joint in metres, y up; Y is about 1 above the floor for a person who stands");
+  AddParsed(app, kReactionGroup, "--seed", "SEED", ParseSeed, &arguments->seed,
             "Seed of a model that samples; the same seed gives the same answer (default: derived "
-            "from the leader; a typical one in live sessions)")
-      ->group(kReactionGroup);
-  AddParsed(app, "--variety", "VARIETY", ParseVariety, &arguments->variety,
+            "from the leader; a typical one in live sessions)");
+  AddParsed(app, kReactionGroup, "--variety", "VARIETY", ParseVariety, &arguments->variety,
             "Variety of the answers of such a model: 0 typical, 1 as varied as people, at most 2 "
-            "(default: 1)")
-      ->group(kReactionGroup);
-  app->add_option(
-         "--candidates", arguments->candidates,
-         "Samples that such a model draws for each window, from which the best becomes the "
-         "answer; higher values take longer (default: 1)")
-      ->check(base::InRange(1, 16))
-      ->type_name("COUNT")
-      ->group(kReactionGroup);
+            "(default: 1)");
+  AddValue(app, kReactionGroup, "--candidates", "COUNT", &arguments->candidates,
+           "Samples that such a model draws for each window, from which the best becomes the "
+           "answer; higher values take longer (default: 1)")
+      ->check(base::InRange(1, 16));
 }
 
 void AddLeaderFlags(CLI::App* app, ReactionArguments* arguments) {
-  AddChoice(app, "--leader-side", kSides, &arguments->leader_side,
-            "The person who leads in a file with two people")
-      ->default_str(NameOf(kSides, arguments->leader_side))
-      ->group(kInputGroup);
+  AddParsed(app, kInputGroup, "--leader-side", "left|right", batch::ParseSide,
+            &arguments->leader_side, "The person who leads in a file with two people")
+      ->default_str("left");
   AddReadingFlags(app, &arguments->input);
 }
 
@@ -285,19 +277,6 @@ absl::StatusOr<SynthesisRequest> ReadRequestFile(const std::filesystem::path& fi
   return request;
 }
 
-absl::Status CheckInputs(const ReactionArguments& arguments) {
-  absl::Status status = ReadJoints(arguments.input.joint_map).status();
-  if (status.ok() && !arguments.leader.empty()) {
-    status = formats::CheckReadable(arguments.leader, arguments.input.format);
-  }
-  const std::string& start = arguments.follower_start;
-  if (!status.ok() || start.empty() || batch::ParsePoint(start).has_value()) return status;
-  status = formats::CheckReadable(start, std::nullopt);
-  if (!absl::IsNotFound(status)) return status;
-  return absl::NotFoundError(
-      absl::StrCat("--follower-start: ", status.message(), "; expected a motion file or X,Y,Z"));
-}
-
 absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments) {
   absl::StatusOr<SynthesisRequest> request = SynthesisRequest();
   if (!arguments.request.empty()) request = ReadRequestFile(arguments.request);
@@ -313,21 +292,26 @@ absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments
   return request;
 }
 
-absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model) {
-  std::vector<ClassWeight> weights = request.weights;
-  for (const WeightKeyframe& keyframe : request.keyframes) {
-    weights.insert(weights.end(), keyframe.weights.begin(), keyframe.weights.end());
-  }
-  const std::vector<std::string>& known = model.interaction_classes;
-  for (const ClassWeight& weight : weights) {
-    const std::string& name = weight.interaction_class;
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(request.keyframes.empty() ? "label" : "keyframe", ": class: expected one of ",
-                     model.name, " (", absl::StrJoin(known, ", "), "), got ", base::Quoted(name),
-                     base::DidYouMean(name, known)));
-  }
-  return absl::OkStatus();
+absl::StatusOr<PreparedCall> PrepareCall(
+    const ReactionArguments& arguments, const ServerArguments& server,
+    const std::function<absl::Status(const SynthesisRequest&)>& check,
+    const ProgramEnvironment& environment) {
+  absl::Status status = CheckInputs(arguments);
+  if (!status.ok()) return status;
+  absl::StatusOr<SynthesisRequest> request = StartRequest(arguments);
+  if (!request.ok()) return request.status();
+  status = check(*request);
+  if (!status.ok()) return status;
+  absl::StatusOr<Client> client = Connect(server, environment);
+  if (!client.ok()) return client.status();
+  absl::StatusOr<ModelDetails> details = client->GetModel(request->model);
+  if (!details.ok()) return details.status();
+  status = CheckLabels(*request, details->model);
+  if (!status.ok()) return status;
+  absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
+  if (!skeleton.ok()) return skeleton.status();
+  return PreparedCall{*std::move(request), *std::move(client), details->model.samples,
+                      *std::move(skeleton)};
 }
 
 absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skeleton& skeleton,

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "absl/strings/string_view.h"
 #include "client/batch/text_values.h"
 #include "client/cli/motion_input.h"
+#include "client/cli/server.h"
 #include "client/request.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
@@ -23,7 +25,7 @@ namespace duet::client::cli {
 
 struct ReactionArguments {
   std::filesystem::path request;  // empty: no file
-  std::filesystem::path leader;   // empty: the leader of the request, or one that is no file
+  std::filesystem::path leader;   // empty: one that is no file
   formats::Side leader_side = kDefaultSide;
   InputArguments input;
   // The fields that flags set in the request.
@@ -51,24 +53,32 @@ absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
 // "30:kick=1,hug=0": weights at a frame.
 absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text);
 
-// Reads a duet.v1.SynthesizeRequest in protobuf's text format. The leader, which may be absent, is
-// in metres, y up; reply_joint_names is not supported.
+// Reads a duet.v1.SynthesizeRequest in protobuf's text format, without a leader, whose file a flag
+// names, and without reply_joint_names.
 //
 // Errors: INVALID_ARGUMENT "FILE: line 3:5: ..." for text that is no such message, and "FILE:
 // field: expected ..., got ..."; those of reading a file. The server checks what depends on the
 // model.
 absl::StatusOr<SynthesisRequest> ReadRequestFile(const std::filesystem::path& file);
 
-// Checks that the files of the flags exist and have a known format. Needs no skeleton, so that a
-// wrong name is rejected before the first call to the server.
-absl::Status CheckInputs(const ReactionArguments& arguments);
-
 // The request of the file with the fields of the flags, except those that are read in a model's
 // joints: the leader and the follower's start.
 absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments);
 
-// Rejects a class that the model does not know and suggests the nearest name.
-absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model);
+// What a command has before it reads motions.
+struct PreparedCall {
+  SynthesisRequest request;  // of StartRequest
+  Client client;
+  bool samples = false;  // the model samples
+  motion::Skeleton skeleton;
+};
+
+// Checks the files of the flags, the request, with `check`, and its classes, and connects. Errors:
+// the first of these, and those of the server.
+absl::StatusOr<PreparedCall> PrepareCall(
+    const ReactionArguments& arguments, const ServerArguments& server,
+    const std::function<absl::Status(const SynthesisRequest&)>& check,
+    const ProgramEnvironment& environment);
 
 // Reads the follower's start and, if the flags name one, the leader, in the skeleton's joints.
 // Levels a leader from a tilted camera. `notes`, which may be null, receives the choices that were

@@ -71,10 +71,7 @@ void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOp
 void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
   const auto add = [app](const char* flag, const char* variable, const char* form,
                          std::string* value, const char* help) {
-    return app->add_option(flag, *value, help)
-        ->envname(variable)
-        ->type_name(form)
-        ->group(kServerGroup);
+    return AddValue(app, kServerGroup, flag, form, value, help)->envname(variable);
   };
   app->add_flag("--tls", server->tls, "Encrypt; trust the certificate authorities of the system")
       ->envname("DUET_TLS")
@@ -98,29 +95,24 @@ void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
 }  // namespace
 
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
-  app->add_option("--server", server->address,
-                  "Server, or any gRPC target such as unix:/run/duet.sock")
+  AddValue(app, kServerGroup, "--server", "HOST:PORT", &server->address,
+           "Server, or any gRPC target such as unix:/run/duet.sock")
       ->envname("DUET_SERVER")
-      ->capture_default_str()
-      ->type_name("HOST:PORT")
-      ->group(kServerGroup);
-  app->add_option("--wait", server->wait_seconds,
-                  "Seconds to retry a server that cannot be reached; at most --timeout")
+      ->capture_default_str();
+  AddValue(app, kServerGroup, "--wait", "SECONDS", &server->wait_seconds,
+           "Seconds to retry a server that cannot be reached; at most --timeout")
       ->check(base::InRange(0.0, 86400.0))
       ->envname("DUET_WAIT")
-      ->capture_default_str()
-      ->type_name("SECONDS")
-      ->group(kServerGroup);
+      ->capture_default_str();
   AddConnectionFlags(app, server);
 }
 
 void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
-  app->add_option("--timeout", server->timeout_seconds, "Deadline of the whole call, with retries")
+  AddValue(app, kServerGroup, "--timeout", "SECONDS", &server->timeout_seconds,
+           "Deadline of the whole call, with retries")
       ->check(base::InRange(0.001, 86400.0))
       ->envname("DUET_TIMEOUT")
-      ->capture_default_str()
-      ->type_name("SECONDS")
-      ->group(kServerGroup);
+      ->capture_default_str();
   AddCredentialFlags(app, server);
 }
 

@@ -27,8 +27,6 @@ constexpr double kLeastLength = 1e-6;
 constexpr double kMostBelowFloor = 0.1, kHighAboveFloor = 0.15, kMostTimeInTheAir = 0.25;
 // A fist in boxing reaches 11 m/s, a kicking foot 16.
 constexpr double kFastestJoint = 20, kFastestRoot = 10;
-// Joints that swap places are at least this far apart.
-constexpr float kLeastSwap = 0.15f;
 // A knee or an elbow counts as bent if it is this far off the line between the limb's ends. If more
 // than this share of the bending is in the wrong direction, it is not noise.
 constexpr float kLeastBend = 0.04f;
@@ -181,29 +179,6 @@ class Checker {
     Add("jumps", jumps == 0, text);
   }
 
-  // Whether a joint and its counterpart swap places in a frame.
-  bool SwapsAt(int frame, int left, int right) const {
-    const Vec3 l = clip_.at(frame, left), r = clip_.at(frame, right);
-    const Vec3 l0 = clip_.at(frame - 1, left), r0 = clip_.at(frame - 1, right);
-    return Distance(l0, r0) > kLeastSwap &&
-           Distance(l, r0) + Distance(r, l0) < (Distance(l, l0) + Distance(r, r0)) / 2;
-  }
-
-  int CountSwaps() const {
-    int swaps = 0;
-    for (int frame = 1; frame < clip_.frame_count(); ++frame) {
-      bool swapped =
-          SwapsAt(frame, skeleton_.hips->left, skeleton_.hips->right) ||
-          (skeleton_.feet && SwapsAt(frame, skeleton_.feet->left, skeleton_.feet->right));
-      if (body_.arms.size() == 2) {
-        swapped |= SwapsAt(frame, body_.arms[0].upper, body_.arms[1].upper) ||
-                   SwapsAt(frame, body_.arms[0].end, body_.arms[1].end);
-      }
-      swaps += swapped ? 1 : 0;
-    }
-    return swaps;
-  }
-
   // Distance of the middle of a limb from the line between its ends, in the direction that the hips
   // face. 0 if it is small.
   static double BendForwards(const body::Limb& limb, Vec3 facing, absl::Span<const Vec3> pose) {
@@ -249,7 +224,6 @@ class Checker {
 
   void CheckSides() {
     if (!skeleton_.hips) return;
-    const int swaps = CountSwaps();
     const std::optional<double> bent_wrongly = ShareBentWrongly();
     const bool oppose = ShouldersOppose();
     std::vector<std::string> wrong;
@@ -261,8 +235,6 @@ class Checker {
                           "bending): left and right may be swapped",
                           100 * *bent_wrongly));
     }
-    if (swaps > 0)
-      wrong.push_back(absl::StrCat("left and right change places in ", swaps, " frames"));
     std::string text = wrong.empty() ? "left and right are where they belong" : "";
     for (const std::string& what : wrong) absl::StrAppend(&text, text.empty() ? "" : "; ", what);
     Add("sides", wrong.empty(), text);

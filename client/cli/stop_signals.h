@@ -1,9 +1,11 @@
 #ifndef DUET_CLIENT_CLI_STOP_SIGNALS_H_
 #define DUET_CLIENT_CLI_STOP_SIGNALS_H_
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <mutex>
 #include <thread>
 
 namespace duet::client::cli {
@@ -35,6 +37,31 @@ class StopSignals {
   int signals_ = -1;
   int end_ = -1;
   std::thread watcher_;
+};
+
+// What a signal stops: a target, with Stop(), that may not exist yet when the signal arrives.
+//
+// Threads: safe to call concurrently.
+template <typename Target>
+class Stopper {
+ public:
+  // Null: there is none any more.
+  void Set(Target* target) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    target_ = target;
+    if (stopped_ && target_ != nullptr) target_->Stop();
+  }
+  void Stop() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopped_ = true;
+    if (target_ != nullptr) target_->Stop();
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  std::mutex mutex_;
+  Target* target_ = nullptr;
+  std::atomic<bool> stopped_{false};
 };
 
 }  // namespace duet::client::cli

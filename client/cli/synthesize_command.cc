@@ -2,9 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <iterator>
 #include <memory>
-#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -20,7 +18,6 @@
 #include "client/cli/reaction.h"
 #include "client/cli/report.h"
 #include "client/cli/server.h"
-#include "client/model_skeleton.h"
 #include "model/base/counted.h"
 #include "model/formats/motion_file.h"
 #include "nlohmann/json.hpp"
@@ -55,7 +52,6 @@ bool HoldsRotations(const SynthesizeArguments& arguments) {
 
 // Checks flags that depend on each other.
 void CheckTogether(const SynthesizeArguments& arguments) {
-  if (arguments.leader.empty() && arguments.request.empty()) RejectMissing("--leader or --request");
   if (arguments.weights.empty() && arguments.keyframes.empty() && arguments.request.empty()) {
     RejectMissing("--label, --keyframe or --request");
   }
@@ -82,13 +78,12 @@ absl::Status CheckRequest(const SynthesizeArguments& arguments, const SynthesisR
   return absl::OkStatus();
 }
 
-absl::StatusOr<WrittenFiles> WriteAll(const Paths& outputs, const Synthesis& synthesis) {
-  WrittenFiles written;
+absl::StatusOr<Paths> WriteAll(const Paths& outputs, const Synthesis& synthesis) {
+  Paths written;
   for (const std::filesystem::path& output : outputs) {
-    absl::StatusOr<WrittenFiles> one = WriteOutput(output, synthesis);
-    if (!one.ok()) return NotWritten(one.status());
-    std::move(one->files.begin(), one->files.end(), std::back_inserter(written.files));
-    std::move(one->notes.begin(), one->notes.end(), std::back_inserter(written.notes));
+    const absl::StatusOr<Paths> files = WriteOutput(output, synthesis);
+    if (!files.ok()) return NotWritten(files.status());
+    written.insert(written.end(), files->begin(), files->end());
   }
   return written;
 }
@@ -196,7 +191,7 @@ json PinsJson(const std::vector<JointConstraint>& pins, const std::vector<float>
 }
 
 // The request and the answer. `notes`: on how the leader was read.
-std::string DescribeSynthesis(const Synthesis& synthesis, const WrittenFiles& written,
+std::string DescribeSynthesis(const Synthesis& synthesis, const Paths& written,
                               const std::vector<std::string>& notes) {
   const SynthesisResult& result = synthesis.result;
   const motion::Clip& leader = synthesis.result.pair.leader;
@@ -240,14 +235,13 @@ std::string DescribeSynthesis(const Synthesis& synthesis, const WrittenFiles& wr
   if (result.attempt_count > 1) {
     absl::StrAppend(&text, "          ", base::Counted(result.attempt_count, "attempt"), "\n");
   }
-  for (size_t i = 0; i < written.files.size(); ++i) {
-    absl::StrAppend(&text, i == 0 ? "wrote     " : "          ", written.files[i].string(), "\n");
+  for (size_t i = 0; i < written.size(); ++i) {
+    absl::StrAppend(&text, i == 0 ? "wrote     " : "          ", written[i].string(), "\n");
   }
-  for (const std::string& note : written.notes) absl::StrAppend(&text, "          ", note, "\n");
   return text;
 }
 
-json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
+json SynthesisJson(const Synthesis& synthesis, const Paths& written,
                    const std::vector<std::string>& notes) {
   const SynthesisResult& result = synthesis.result;
   const motion::Clip& leader = result.pair.leader;
@@ -256,9 +250,7 @@ json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
     keyframes.push_back({{"frame", keyframe.frame}, {"weights", WeightsJson(keyframe.weights)}});
   }
   json files = json::array();
-  for (const std::filesystem::path& file : written.files) files.push_back(file.string());
-  std::vector<std::string> all_notes = notes;
-  all_notes.insert(all_notes.end(), written.notes.begin(), written.notes.end());
+  for (const std::filesystem::path& file : written) files.push_back(file.string());
   json object = {{"model", {{"name", result.model_name}, {"version", result.model_version}}},
                  {"leader", synthesis.leader_file.string()},
                  {"frames", leader.frame_count()},
@@ -277,7 +269,7 @@ json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                    {"total", absl::ToDoubleSeconds(result.timings.total)},
                    {"queue", absl::ToDoubleSeconds(result.timings.queue)},
                    {"compute", absl::ToDoubleSeconds(result.timings.compute)}}},
-                 {"notes", all_notes},
+                 {"notes", notes},
                  {"files", files}};
   if (const auto& up = synthesis.request.up) object["up"] = {up->x, up->y, up->z};
   if (result.unfamiliarity) object["unfamiliarity"] = *result.unfamiliarity;
@@ -290,29 +282,19 @@ json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
 
 absl::Status RunSynthesize(const SynthesizeArguments& arguments,
                            const ProgramEnvironment& environment) {
-  const absl::Status inputs = CheckInputs(arguments);
-  if (!inputs.ok()) return inputs;
-  absl::StatusOr<SynthesisRequest> request = StartRequest(arguments);
-  if (!request.ok()) return request.status();
-  absl::Status status = CheckRequest(arguments, *request);
-  if (!status.ok()) return status;
-  const absl::StatusOr<Client> client = Connect(arguments.server, environment);
-  if (!client.ok()) return client.status();
-  const absl::StatusOr<ModelDetails> details = client->GetModel(request->model);
-  if (!details.ok()) return details.status();
-  status = CheckLabels(*request, details->model);
-  if (!status.ok()) return status;
-  const absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
-  if (!skeleton.ok()) return skeleton.status();
+  const auto check = [&arguments](const SynthesisRequest& request) {
+    return CheckRequest(arguments, request);
+  };
+  absl::StatusOr<PreparedCall> call = PrepareCall(arguments, arguments.server, check, environment);
+  if (!call.ok()) return call.status();
   std::vector<std::string> notes;  // on how the leader was read
-  status = ReadMotions(arguments, *skeleton, &*request, &notes);
+  const absl::Status status = ReadMotions(arguments, call->skeleton, &call->request, &notes);
   if (!status.ok()) return status;
-  absl::StatusOr<SynthesisResult> result = client->Synthesize(*request);
+  absl::StatusOr<SynthesisResult> result = call->client.Synthesize(call->request);
   if (!result.ok()) return result.status();
-  const Synthesis synthesis{*std::move(request), *std::move(result), *skeleton,
-                            arguments.leader.empty() ? arguments.request : arguments.leader,
-                            details->model.samples};
-  const absl::StatusOr<WrittenFiles> written = WriteAll(arguments.outputs, synthesis);
+  const Synthesis synthesis{std::move(call->request), *std::move(result), call->skeleton,
+                            arguments.leader, call->samples};
+  const absl::StatusOr<Paths> written = WriteAll(arguments.outputs, synthesis);
   if (!written.ok()) return written.status();
   if (arguments.quiet) return absl::OkStatus();
   *environment.out << (arguments.json ? Print(SynthesisJson(synthesis, *written, notes))
@@ -321,22 +303,17 @@ absl::Status RunSynthesize(const SynthesizeArguments& arguments,
 }
 
 void AddFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  app->add_option("--leader", arguments->leader,
-                  absl::StrCat("Motion of the leader: ", formats::kReadableExtensions))
-      ->type_name("FILE")
-      ->group(kInputGroup);
+  AddValue(app, kInputGroup, "--leader", "FILE", &arguments->leader,
+           absl::StrCat("Motion of the leader: ", formats::kReadableExtensions))
+      ->required();
   AddLeaderFlags(app, arguments);
   AddReactionFlags(app, arguments);
-  app->add_option(
-         "--out", arguments->outputs,
-         absl::StrCat("File to write: .html (a page to watch), ", formats::kWritableExtensions,
-                      ", of which .bvh makes two files; repeatable"))
+  AddValue(app, kOutputGroup, "--out", "FILE", &arguments->outputs,
+           absl::StrCat("File to write: .html (a page to watch), ", formats::kWritableExtensions,
+                        ", of which .bvh makes two files; repeatable"))
       ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
-  app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+      ->allow_extra_args(false);
+  AddSummaryFlags(app, kOutputGroup, &arguments->json, &arguments->quiet);
   AddServerFlags(app, &arguments->server);
   app->footer(kExitCodesFooter);
   app->callback([arguments] { CheckTogether(*arguments); });

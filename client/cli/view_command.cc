@@ -15,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
+#include "client/batch/text_values.h"
 #include "client/cli/command.h"
 #include "client/cli/flags.h"
 #include "client/cli/motion_input.h"
@@ -187,19 +188,14 @@ void AddFlags(CLI::App* command, ViewArguments* arguments) {
       ->required()
       ->expected(1, 12)
       ->type_name("[NAME=]FILE");
-  AddChoice(command, "--leader-side", kSides, &arguments->leader_side,
-            "The person who leads in a file with two people")
-      ->default_str(NameOf(kSides, arguments->leader_side))
-      ->group(kInputGroup);
+  AddParsed(command, kInputGroup, "--leader-side", "left|right", batch::ParseSide,
+            &arguments->leader_side, "The person who leads in a file with two people")
+      ->default_str("left");
   AddInputFlags(command, &arguments->input);
   AddSkeletonFlag(command, &arguments->skeleton);
-  command->add_option("--out", arguments->out, "Page to write, .html")
-      ->required()
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  command->add_option("--title", arguments->title, "Title of the page")
-      ->type_name("TEXT")
-      ->group(kOutputGroup);
+  AddValue(command, kOutputGroup, "--out", "FILE", &arguments->out, "Page to write, .html")
+      ->required();
+  AddValue(command, kOutputGroup, "--title", "TEXT", &arguments->title, "Title of the page");
   command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
   command->footer(kFooter);
   command->callback([arguments] { CheckPage(arguments->out); });

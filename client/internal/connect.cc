@@ -11,6 +11,7 @@
 #include "absl/strings/strip.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "client/client.h"
 #include "client/internal/connection_impl.h"
 #include "client/internal/stub.h"
 #include "grpcpp/create_channel.h"
@@ -202,3 +203,13 @@ absl::Status CheckTls(const TlsOptions& tls, const TlsNames& names) {
 }
 
 }  // namespace duet::client::internal
+
+namespace duet::client {
+
+absl::StatusOr<Client> Client::Create(const ClientOptions& options) {
+  absl::StatusOr<std::shared_ptr<Connection>> connection = internal::Connect(options);
+  if (!connection.ok()) return connection.status();
+  return Client(*std::move(connection));
+}
+
+}  // namespace duet::client

@@ -2,15 +2,13 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "client/internal/grpc_status.h"
 #include "client/internal/stub.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/client_context.h"
-#include "grpcpp/completion_queue.h"
-#include "grpcpp/support/async_stream.h"
+#include "grpcpp/support/client_callback.h"
 #include "grpcpp/support/sync_stream.h"
 
 namespace duet::client::internal {
@@ -61,104 +59,68 @@ class GrpcLiveStream final : public LiveStream {
       stream_;
 };
 
-// A stream in progress. Each event of its completion queue makes it take one step.
-class ListenedStream {
+// Counts the streams in progress.
+//
+// Threads: safe to call concurrently.
+class UnderWay {
  public:
-  ListenedStream(v1::MotionSynthesis::Stub& stub, const CallContext& call,
-                 const std::string& authorization, const v1::SynthesizeRequest& request,
-                 std::unique_ptr<StreamListener> listener, grpc::CompletionQueue* queue)
-      : listener_(std::move(listener)) {
-    Prepare(call, authorization, &context_);
-    reader_ = stub.PrepareAsyncSynthesize(&context_, request, queue);
-    reader_->StartCall(this);
+  void Begin() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++count_;
   }
-
-  // `ok`: the previous operation succeeded. Returns false when the stream is over.
-  bool Step(bool ok) {
-    switch (state_) {
-      case State::kStarting:
-        state_ = ok ? State::kReading : State::kFinishing;
-        break;
-      case State::kReading:
-        if (!ok) state_ = State::kFinishing;
-        if (ok && wanted_ && !listener_->OnMessage(response_)) {
-          wanted_ = false;
-          context_.TryCancel();
-        }
-        break;
-      case State::kFinishing:
-        listener_->OnEnd(FromGrpc(status_));
-        return false;
-    }
-    if (state_ == State::kReading) {
-      reader_->Read(&response_, this);
-    } else {
-      reader_->Finish(&status_, this);
-    }
-    return true;
+  void End() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (--count_ == 0) none_.notify_all();
+  }
+  void WaitUntilNone() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    none_.wait(lock, [this] { return count_ == 0; });
   }
 
  private:
-  enum class State { kStarting, kReading, kFinishing };
-
-  grpc::ClientContext context_;
-  std::unique_ptr<StreamListener> listener_;
-  std::unique_ptr<grpc::ClientAsyncReader<v1::SynthesizeResponse>> reader_;
-  v1::SynthesizeResponse response_;
-  grpc::Status status_;
-  State state_ = State::kStarting;
-  bool wanted_ = true;
+  std::mutex mutex_;
+  std::condition_variable none_;
+  int count_ = 0;
 };
 
-// A completion queue and the thread that processes its events. One thread serves many calls,
-// because a thread for each call would wake up for each message. The destructor waits for calls in
-// progress.
-class StreamThread {
+// A stream that gRPC's own threads read. Deletes itself at its end.
+class ListenedStream final : public grpc::ClientReadReactor<v1::SynthesizeResponse> {
  public:
-  StreamThread() : thread_([this] { Run(); }) {}
-  StreamThread(const StreamThread&) = delete;
-  StreamThread& operator=(const StreamThread&) = delete;
-  ~StreamThread() {
-    {
-      // No operation may be started on a queue after its shutdown.
-      std::unique_lock<std::mutex> lock(mutex_);
-      none_under_way_.wait(lock, [this] { return under_way_ == 0; });
-    }
-    queue_.Shutdown();
-    thread_.join();
+  ListenedStream(const CallContext& call, const std::string& authorization,
+                 std::unique_ptr<StreamListener> listener, UnderWay* under_way)
+      : listener_(std::move(listener)), under_way_(under_way) {
+    Prepare(call, authorization, &context_);
   }
 
-  void Start(v1::MotionSynthesis::Stub& stub, const CallContext& call,
-             const std::string& authorization, const v1::SynthesizeRequest& request,
-             std::unique_ptr<StreamListener> listener) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      ++under_way_;
+  void Start(v1::MotionSynthesis::Stub& stub, const v1::SynthesizeRequest& request) {
+    under_way_->Begin();
+    stub.async()->Synthesize(&context_, &request, this);
+    StartRead(&response_);
+    StartCall();
+  }
+
+  void OnReadDone(bool ok) override {
+    if (!ok) return;
+    if (wanted_ && !listener_->OnMessage(response_)) {
+      wanted_ = false;
+      context_.TryCancel();
     }
-    // Run deletes it after its last step.
-    new ListenedStream(stub, call, authorization, request, std::move(listener), &queue_);
+    StartRead(&response_);
+  }
+
+  void OnDone(const grpc::Status& status) override {
+    listener_->OnEnd(FromGrpc(status));
+    UnderWay* const under_way = under_way_;
+    delete this;
+    under_way->End();
   }
 
  private:
-  void Run() {
-    void* tag = nullptr;
-    for (bool ok = false; queue_.Next(&tag, &ok);) {
-      std::unique_ptr<ListenedStream> stream(static_cast<ListenedStream*>(tag));
-      if (stream->Step(ok)) {
-        (void)stream.release();  // its next event is in the queue
-        continue;
-      }
-      stream.reset();
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (--under_way_ == 0) none_under_way_.notify_all();
-    }
-  }
-
-  grpc::CompletionQueue queue_;
-  std::mutex mutex_;
-  std::condition_variable none_under_way_;
-  int under_way_ = 0;
-  std::thread thread_;  // last: it uses all of the above
+  grpc::ClientContext context_;
+  std::unique_ptr<StreamListener> listener_;
+  UnderWay* const under_way_;
+  v1::SynthesizeResponse response_;
+  bool wanted_ = true;
 };
 
 class GrpcStub final : public Stub {
@@ -166,25 +128,18 @@ class GrpcStub final : public Stub {
   GrpcStub(std::shared_ptr<grpc::Channel> channel, const std::string& token)
       : stub_(v1::MotionSynthesis::NewStub(std::move(channel))),
         authorization_(token.empty() ? "" : "Bearer " + token) {}
+  GrpcStub(const GrpcStub&) = delete;
+  GrpcStub& operator=(const GrpcStub&) = delete;
+  ~GrpcStub() override { under_way_.WaitUntilNone(); }
 
   absl::StatusOr<v1::ListModelsResponse> ListModels(const CallContext& call,
                                                     const v1::ListModelsRequest& request) override {
-    grpc::ClientContext context;
-    Prepare(call, authorization_, &context);
-    v1::ListModelsResponse response;
-    absl::Status status = FromGrpc(stub_->ListModels(&context, request, &response));
-    if (!status.ok()) return status;
-    return response;
+    return Call(&v1::MotionSynthesis::Stub::ListModels, call, request, v1::ListModelsResponse());
   }
 
   absl::StatusOr<v1::GetModelResponse> GetModel(const CallContext& call,
                                                 const v1::GetModelRequest& request) override {
-    grpc::ClientContext context;
-    Prepare(call, authorization_, &context);
-    v1::GetModelResponse response;
-    absl::Status status = FromGrpc(stub_->GetModel(&context, request, &response));
-    if (!status.ok()) return status;
-    return response;
+    return Call(&v1::MotionSynthesis::Stub::GetModel, call, request, v1::GetModelResponse());
   }
 
   std::unique_ptr<ResponseStream> Synthesize(const CallContext& call,
@@ -194,8 +149,9 @@ class GrpcStub final : public Stub {
 
   void Start(const CallContext& call, const v1::SynthesizeRequest& request,
              std::unique_ptr<StreamListener> listener) override {
-    std::call_once(first_start_, [this] { streams_ = std::make_unique<StreamThread>(); });
-    streams_->Start(*stub_, call, authorization_, request, std::move(listener));
+    // Deletes itself.
+    (new ListenedStream(call, authorization_, std::move(listener), &under_way_))
+        ->Start(*stub_, request);
   }
 
   std::unique_ptr<LiveStream> SynthesizeLive(const CallContext& call) override {
@@ -203,10 +159,21 @@ class GrpcStub final : public Stub {
   }
 
  private:
+  template <typename Request, typename Response>
+  absl::StatusOr<Response> Call(grpc::Status (v1::MotionSynthesis::Stub::*method)(
+                                    grpc::ClientContext*, const Request&, Response*),
+                                const CallContext& call, const Request& request,
+                                Response response) {
+    grpc::ClientContext context;
+    Prepare(call, authorization_, &context);
+    absl::Status status = FromGrpc(((*stub_).*method)(&context, request, &response));
+    if (!status.ok()) return status;
+    return response;
+  }
+
   std::unique_ptr<v1::MotionSynthesis::Stub> stub_;
   const std::string authorization_;
-  std::once_flag first_start_;
-  std::unique_ptr<StreamThread> streams_;
+  UnderWay under_way_;
 };
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/error_details.h"
 #include "client/internal/grpc_status.h"
 #include "client/internal/proto_conversion.h"
 

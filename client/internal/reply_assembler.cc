@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/error_details.h"
 #include "client/internal/grpc_status.h"
 #include "client/internal/proto_conversion.h"
 #include "client/internal/rotations.h"
@@ -18,25 +15,6 @@ namespace {
 template <typename... Parts>
 absl::Status Malformed(const Parts&... parts) {
   return absl::InternalError(absl::StrCat("the server's reply is malformed: ", parts...));
-}
-
-absl::Status CheckGrade(const v1::MotionGrade& grade, int frames) {
-  for (const float share :
-       {grade.twisted(), grade.skating(), grade.leader_skating(), grade.overlapping()}) {
-    // Negated, so that NaN is rejected.
-    if (!(share >= 0 && share <= 1)) {
-      return Malformed("summary.grade: expected shares from 0 to 1, got ", share);
-    }
-  }
-  for (const v1::FrameRun& run : grade.bad_runs()) {
-    if (run.frame_count() >= 1 &&
-        uint64_t{run.first_frame()} + run.frame_count() <= static_cast<uint64_t>(frames)) {
-      continue;
-    }
-    return Malformed("summary.grade.bad_runs: expected runs of the ", frames, " frames, got ",
-                     run.frame_count(), " from ", run.first_frame());
-  }
-  return absl::OkStatus();
 }
 
 }  // namespace
@@ -158,22 +136,6 @@ std::optional<motion::JointRotations> ReplyAssembler::RotationsFrom(int first) c
   return motion::JointRotations{rotations_.rig, {begin, rotations_.rotations.end()}};
 }
 
-absl::Status ReplyAssembler::CheckConstraints(const v1::SynthesisSummary& summary) const {
-  if (summary.constraint_metres_size() != constraints_) {
-    return Malformed("summary.constraint_metres: expected ", constraints_,
-                     " values, one for each of constraints, got ", summary.constraint_metres_size(),
-                     "; does the server know constraints?");
-  }
-  for (const float metres : summary.constraint_metres()) {
-    // Negated, so that NaN is rejected.
-    if (!(metres >= 0 && std::isfinite(metres))) {
-      return Malformed("summary.constraint_metres: expected finite values of 0 or more, got ",
-                       metres);
-    }
-  }
-  return absl::OkStatus();
-}
-
 absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) {
   if (!header_.has_value()) return Malformed("a summary before the header");
   if (received_ != leader_.frame_count()) {
@@ -186,14 +148,11 @@ absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) 
     return Malformed("summary.chunk_count: expected ", chunk_count_, ", got ",
                      summary.chunk_count());
   }
-  // Negated, so that NaN is rejected.
-  if (summary.has_unfamiliarity() &&
-      !(summary.unfamiliarity() >= 0 && std::isfinite(summary.unfamiliarity()))) {
-    return Malformed("summary.unfamiliarity: expected a finite value of 0 or more, got ",
-                     summary.unfamiliarity());
+  if (summary.constraint_metres_size() != constraints_) {
+    return Malformed("summary.constraint_metres: expected ", constraints_,
+                     " values, one for each of constraints, got ", summary.constraint_metres_size(),
+                     "; does the server know constraints?");
   }
-  if (absl::Status status = CheckGrade(summary.grade(), received_); !status.ok()) return status;
-  if (absl::Status status = CheckConstraints(summary); !status.ok()) return status;
   summary_ = summary;
   return absl::OkStatus();
 }

@@ -52,7 +52,6 @@ class ReplyAssembler {
   absl::Status CheckChunk(const v1::MotionChunk& chunk) const;
   // Of the frames from `first` on that have been received. Absent without a rig.
   std::optional<motion::JointRotations> RotationsFrom(int first) const;
-  absl::Status CheckConstraints(const v1::SynthesisSummary& summary) const;
   absl::Status AcceptSummary(const v1::SynthesisSummary& summary);
   absl::Status HandOut();
 

@@ -2,8 +2,6 @@
 #define DUET_CLIENT_LIVE_JSON_LINES_H_
 
 #include <cstddef>
-#include <istream>
-#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -20,22 +18,33 @@ namespace duet::client::live {
 // The longest line that is read, in bytes.
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 
-// Lines of an input that may be slow, such as a pipe.
+// Reads the lines of a file descriptor, which it does not close and which may be slow, such as a
+// pipe.
 //
 // Threads: Next is called by one thread; Stop by any.
 class LineReader {
  public:
-  virtual ~LineReader() = default;
+  explicit LineReader(int descriptor);
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+  ~LineReader();
+
   // Blocks until the next line, which it returns without its end. Absent: the end of the input, or
   // Stop was called. Errors: INVALID_ARGUMENT for a line of more than kMaxLineBytes.
-  virtual absl::StatusOr<std::optional<std::string>> Next() = 0;
-  virtual void Stop() = 0;
-};
+  absl::StatusOr<std::optional<std::string>> Next();
+  // Interrupts Next.
+  void Stop();
 
-// Reads a file descriptor, which it does not close. Stop interrupts Next.
-std::unique_ptr<LineReader> ReadLinesOf(int descriptor);
-// Reads a stream, which outlives the reader. Stop takes effect at the next line.
-std::unique_ptr<LineReader> ReadLinesOf(std::istream& in);
+ private:
+  std::optional<std::string> Take(std::size_t length, std::size_t taken);
+  bool Read();
+
+  const int descriptor_;
+  const int stop_;
+  std::string buffer_;
+  std::size_t searched_ = 0;  // the buffer's bytes before this one hold no end of a line
+  bool stopped_ = false;
+};
 
 // How JSON lines are read.
 struct JsonLinesOptions {
@@ -61,12 +70,12 @@ struct JsonLinesOptions {
 // Errors: INVALID_ARGUMENT naming the line, the field, the expected value and the actual one.
 class JsonLinesSource final : public LeaderSource {
  public:
-  JsonLinesSource(std::unique_ptr<LineReader> lines, JsonLinesOptions options)
-      : lines_(std::move(lines)), options_(std::move(options)) {}
+  JsonLinesSource(int descriptor, JsonLinesOptions options)
+      : lines_(descriptor), options_(std::move(options)) {}
 
   absl::StatusOr<LeaderFormat> Open() override;
   absl::StatusOr<std::optional<LeaderEvent>> Next() override;
-  void Stop() override { lines_->Stop(); }
+  void Stop() override { lines_.Stop(); }
   bool IsLive() const override { return options_.is_live; }
   std::vector<std::string> Notes() const override { return retargeting::JointNotes(joints_); }
 
@@ -79,7 +88,7 @@ class JsonLinesSource final : public LeaderSource {
   absl::Status MapJoints(const std::vector<motion::Vec3>& pose);
   absl::Status InLine(const absl::Status& status) const;
 
-  std::unique_ptr<LineReader> lines_;
+  LineReader lines_;
   const JsonLinesOptions options_;
   int line_ = 0;
   std::vector<std::string> joint_names_;

@@ -5,7 +5,6 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
-#include <iterator>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -13,17 +12,18 @@
 
 namespace duet::client::batch::flow {
 
-// Passes values between threads. Put blocks while the queue is full.
+// Passes values between threads. A value that was taken is either done or put back, and the queue
+// ends when all values are done, not when it is empty, because values may be put back.
 //
 // Threads: safe to call concurrently.
 template <typename Value>
-class BoundedQueue {
+class Queue {
  public:
   // `capacity`: maximum total cost of its values.
-  explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
+  explicit Queue(std::size_t capacity) : capacity_(capacity) {}
 
-  // Returns false, and drops the value, after Stop. A value that costs more than the capacity waits
-  // until the queue is empty.
+  // Blocks while the queue is full. Returns false, and drops the value, after Stop. A value that
+  // costs more than the capacity waits until the queue is empty.
   bool Put(Value value, std::size_t cost = 1) {
     std::unique_lock<std::mutex> lock(mutex_);
     has_room_.wait(lock, [&] { return stopped_ || values_.empty() || cost_ + cost <= capacity_; });
@@ -35,91 +35,10 @@ class BoundedQueue {
     return true;
   }
 
-  // nullopt after Stop, and after Close when the queue is empty.
-  std::optional<Value> Take() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    has_values_.wait(lock, [this] { return stopped_ || closed_ || !values_.empty(); });
-    if (stopped_ || values_.empty()) return std::nullopt;
-    std::optional<Value> value(std::move(values_.front().value));
-    cost_ -= values_.front().cost;
-    values_.pop_front();
-    has_room_.notify_one();
-    return value;
-  }
-
-  // All values of the next `time`, at least one. Returns earlier if the queue is full or closed.
-  // Empty when Take would return nullopt.
-  std::vector<Value> Gather(std::chrono::nanoseconds time) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    has_much_.wait_for(lock, time, [this] { return stopped_ || closed_ || HasMuch(); });
-    has_values_.wait(lock, [this] { return stopped_ || closed_ || !values_.empty(); });
-    std::vector<Value> all;
-    if (stopped_) return all;
-    all.reserve(values_.size());
-    for (Priced& priced : values_) all.push_back(std::move(priced.value));
-    values_.clear();
-    cost_ = 0;
-    has_room_.notify_all();
-    return all;
-  }
-
-  // No more values will be put.
-  void Close() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    closed_ = true;
-    has_values_.notify_all();
-    has_much_.notify_all();
-  }
-  // Drops all values.
-  void Stop() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stopped_ = true;
-    values_.clear();
-    cost_ = 0;
-    has_values_.notify_all();
-    has_much_.notify_all();
-    has_room_.notify_all();
-  }
-
- private:
-  struct Priced {
-    Value value;
-    std::size_t cost;
-  };
-  bool HasMuch() const { return cost_ > capacity_ / 2; }
-
-  const std::size_t capacity_;
-  std::mutex mutex_;
-  std::condition_variable has_values_, has_much_, has_room_;
-  std::deque<Priced> values_;
-  std::size_t cost_ = 0;
-  bool closed_ = false;
-  bool stopped_ = false;
-};
-
-// A queue of work. A value that was taken is either done or put back. The queue ends when all
-// values are done, not when it is empty, because values may be put back.
-//
-// Threads: safe to call concurrently.
-template <typename Value>
-class WorkQueue {
- public:
-  explicit WorkQueue(std::size_t capacity) : capacity_(capacity) {}
-
-  // Blocks while the queue is full. Returns false, and drops the value, after Stop.
-  bool Put(Value value) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    has_room_.wait(lock, [this] { return stopped_ || values_.size() < capacity_; });
-    if (stopped_) return false;
-    values_.push_back(std::move(value));
-    has_values_.notify_one();
-    return true;
-  }
-
   // Puts a taken value back, before all others. Never blocks.
   void PutBack(Value value) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!stopped_) values_.push_front(std::move(value));
+    if (!stopped_) values_.push_front({std::move(value), 0});
     EndOne();
     has_values_.notify_one();
   }
@@ -134,11 +53,28 @@ class WorkQueue {
     std::unique_lock<std::mutex> lock(mutex_);
     has_values_.wait(lock, [this] { return stopped_ || !values_.empty() || AllDone(); });
     if (stopped_ || values_.empty()) return std::nullopt;
-    std::optional<Value> value(std::move(values_.front()));
+    std::optional<Value> value(std::move(values_.front().value));
+    cost_ -= values_.front().cost;
     values_.pop_front();
     ++taken_;
     has_room_.notify_one();
     return value;
+  }
+
+  // All values of the next `time`, at least one, which count as done. Returns earlier if the queue
+  // is full or closed. Empty when Take would return nullopt.
+  std::vector<Value> Gather(std::chrono::nanoseconds time) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    has_much_.wait_for(lock, time, [this] { return stopped_ || closed_ || HasMuch(); });
+    has_values_.wait(lock, [this] { return stopped_ || !values_.empty() || AllDone(); });
+    std::vector<Value> all;
+    if (stopped_) return all;
+    all.reserve(values_.size());
+    for (Priced& priced : values_) all.push_back(std::move(priced.value));
+    values_.clear();
+    cost_ = 0;
+    has_room_.notify_all();
+    return all;
   }
 
   // No more new values will be put.
@@ -146,13 +82,16 @@ class WorkQueue {
     const std::lock_guard<std::mutex> lock(mutex_);
     closed_ = true;
     has_values_.notify_all();
+    has_much_.notify_all();
   }
   // Drops all values.
   void Stop() {
     const std::lock_guard<std::mutex> lock(mutex_);
     stopped_ = true;
     values_.clear();
+    cost_ = 0;
     has_values_.notify_all();
+    has_much_.notify_all();
     has_room_.notify_all();
   }
   // Waits until no value is taken.
@@ -162,6 +101,11 @@ class WorkQueue {
   }
 
  private:
+  struct Priced {
+    Value value;
+    std::size_t cost;
+  };
+  bool HasMuch() const { return cost_ > capacity_ / 2; }
   bool AllDone() const { return closed_ && values_.empty() && taken_ == 0; }
   void EndOne() {
     --taken_;
@@ -172,8 +116,9 @@ class WorkQueue {
 
   const std::size_t capacity_;
   std::mutex mutex_;
-  std::condition_variable has_values_, has_room_, none_taken_;
-  std::deque<Value> values_;
+  std::condition_variable has_values_, has_much_, has_room_, none_taken_;
+  std::deque<Priced> values_;
+  std::size_t cost_ = 0;
   std::size_t taken_ = 0;
   bool closed_ = false;
   bool stopped_ = false;

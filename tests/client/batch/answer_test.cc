@@ -16,14 +16,15 @@ namespace {
 constexpr int kFrames = 30;
 
 // A person, and the same one moved.
-motion::ClipPair Pair(motion::Vec3 by) {
-  motion::ClipPair pair;
+SynthesisResult Pair(motion::Vec3 by) {
+  SynthesisResult result;
+  motion::ClipPair& pair = result.pair;
   pair.leader.joint_names = motion::SbuSkeleton().joint_names;
   pair.leader.frame_rate_hz = 15;
   pair.leader.poses = test::SwayingMotion(kFrames, 15);
   pair.follower = pair.leader;
   for (motion::Vec3& position : pair.follower.poses.all()) position += by;
-  return pair;
+  return result;
 }
 
 motion::Skeleton WithLandmarks() {
@@ -39,18 +40,18 @@ double FigureOf(const Quality& quality, const std::string& name) {
 }
 
 TEST(Measure, MeasuresThePlaceOfTheFollower) {
-  const Quality standing = Measure(Pair({3, 0, 4}), WithLandmarks(), {});
+  const Quality standing = Measure(Pair({3, 0, 4}), WithLandmarks(), std::nullopt);
   EXPECT_NEAR(FigureOf(standing, "distance_metres"), 5, 1e-4);
   EXPECT_EQ(FigureOf(standing, "penetration_metres"), 0);
   EXPECT_GT(FigureOf(standing, "range_of_motion_metres"), 0);
   EXPECT_LT(FigureOf(standing, "lean_degrees"), 45);
 
-  const Quality floating = Measure(Pair({0, 0.5f, 0}), WithLandmarks(), {});
+  const Quality floating = Measure(Pair({0, 0.5f, 0}), WithLandmarks(), std::nullopt);
   EXPECT_NEAR(
       FigureOf(floating, "foot_above_floor_metres") - FigureOf(standing, "foot_above_floor_metres"),
       0.5, 1e-4);
   EXPECT_GT(FigureOf(floating, "penetration_metres"), 0);
-  const Quality sunk = Measure(Pair({3, -0.5f, 0}), WithLandmarks(), {});
+  const Quality sunk = Measure(Pair({3, -0.5f, 0}), WithLandmarks(), std::nullopt);
   EXPECT_GT(FigureOf(sunk, "foot_below_floor_metres"), 0.4);
 }
 
@@ -58,7 +59,7 @@ TEST(Measure, OmitsFiguresWithoutTheirJoints) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   skeleton.hips.reset();
   skeleton.feet.reset();
-  const Quality quality = Measure(Pair({1, 0, 0}), skeleton, {});
+  const Quality quality = Measure(Pair({1, 0, 0}), skeleton, std::nullopt);
   EXPECT_EQ(quality.figures.count("lean_degrees"), 0u);
   EXPECT_EQ(quality.figures.count("foot_above_floor_metres"), 0u);
   EXPECT_EQ(quality.figures.count("twisted"), 0u);

@@ -107,10 +107,10 @@ class JobTest : public ::testing::Test {
     model.joint_names = motion::SbuSkeleton().joint_names;
     model.samples = true;
     JobFolder folder(folder_ / out);
-    JobIdentity begun;
+    v1::Job begun;
     absl::Status status = folder.Open(IdentityOf(*recipe, {}), &begun);
     if (!status.ok()) return status;
-    const JobIdentity identity = IdentityOf(*recipe, {}, {model});
+    const v1::Job identity = IdentityOf(*recipe, {}, {model});
     const auto list = [&] {
       return ReadManifest(std::make_unique<std::istringstream>(manifest), folder_.path(), "m");
     };
@@ -123,10 +123,8 @@ class JobTest : public ::testing::Test {
     if (!check.ok()) return check.status();
     plan = Plan::Create(*recipe, {model}, list());
     EXPECT_THAT(folder.Begin(identity), IsOk());
-    Job job({*recipe,
+    Job job({{*recipe, {model}, {motion::SbuSkeleton()}},
              {},
-             {model},
-             {motion::SbuSkeleton()},
              Client(connection_),
              &folder,
              survey->get(),

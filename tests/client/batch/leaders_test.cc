@@ -7,7 +7,6 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/motion/reading_setting.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -138,41 +137,14 @@ TEST_F(ListLeadersTest, FoldersAreMirroredByName) {
   EXPECT_THAT(*keys, ElementsAre("c", "walks/a", "walks/a_csv", "walks/b"));
 }
 
-TEST_F(ListLeadersTest, TextAndJsonOfAFolderAreSkippedUnlessTheFormatIsStated) {
-  const test::TemporaryFolder folder;
-  for (const char* name : {"walk.txt", "motion.JSON", "walk.bvh"}) {
-    test::WriteTestFile(folder / name, "");
+TEST_F(ListLeadersTest, TextAndJsonOfAFolderAreSkipped) {
+  for (const char* name : {"texts/walk.txt", "texts/motion.JSON", "texts/step.bvh"}) {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    test::WriteTestFile(folder_ / name, "");
   }
-  const auto listed = [&folder](const std::optional<formats::Format>& format) {
-    return Keys(*ReadAll(**ListLeaders({folder.path().string()}, format)));
-  };
-  EXPECT_THAT(listed(std::nullopt), ElementsAre("walk"));
-  EXPECT_THAT(listed(formats::Format::kSbuText), ElementsAre("walk"));
-  EXPECT_THAT(listed(formats::Format::kJson), ElementsAre("motion"));
+  EXPECT_THAT(*List({"texts"}), ElementsAre("step"));
   // Somebody who names a file means it.
-  const auto source = ListLeaders({(folder / "walk.txt").string()});
-  ASSERT_THAT(source, IsOk());
-  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("walk"));
-}
-
-TEST_F(ListLeadersTest, FormatFlagAllowsAnyExtension) {
-  test::WriteTestFile(folder_ / "walks/take1", "");
-  test::WriteTestFile(folder_ / "walks/take2.mocap", "");
-  std::vector<std::string> keys;
-  auto source = ListLeaders({folder_.path().string()}, formats::Format::kBvh);
-  ASSERT_THAT(source, IsOk());
-  // notes.md might be one; a.csv and c.npy say that they are none.
-  EXPECT_THAT(Keys(*ReadAll(**source)),
-              ElementsAre("walks/a", "walks/b", "walks/notes", "walks/take1", "walks/take2"));
-  EXPECT_THAT(List({"walks/take2.mocap"}), StatusIs(absl::StatusCode::kInvalidArgument, _));
-  std::filesystem::create_directories(folder_ / "unnamed");
-  test::WriteTestFile(folder_ / "unnamed/take3", "");
-  const absl::Status none = List({"unnamed"}).status();
-  EXPECT_THAT(none, StatusIs(absl::StatusCode::kInvalidArgument,
-                             HasSubstr("expected one or more motion files")));
-  EXPECT_EQ(motion::MendingSetting(none), motion::ReadingSetting::kFormat);
-  source = ListLeaders({(folder_ / "walks/take2.mocap").string()}, formats::Format::kBvh);
-  EXPECT_THAT(source, IsOk());
+  EXPECT_THAT(*List({"texts/walk.txt"}), ElementsAre("walk"));
 }
 
 TEST_F(ListLeadersTest, MissingPathIsRejected) {

@@ -84,15 +84,11 @@ TEST(Plan, OnlySeveralCandidatesChangeTheItem) {
 TEST(Plan, EveryKindOfReaction) {
   const auto items = PlanOf(R"(
     reactions { each_class {} }
-    reactions { name: 'turn' schedule { keyframes { at: 0 labels { weights { key: 'kick' value: 1 } } }
-                                        keyframes { at: 1 labels { weights { key: 'hug' value: 1 } } } } }
     reactions { name: 'm' mixes { count: 2 classes_in_mix: 3 } })",
                             "leader\na.bvh\n");
   ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items),
-              ElementsAre("a-2-kick", "a-2-push", "a-2-hug", "a-2-turn", "a-2-m0", "a-2-m1"));
-  EXPECT_EQ((*items)[3].keyframes.size(), 2u);
-  EXPECT_EQ((*items)[4].labels.size(), 3u);
+  EXPECT_THAT(Names(*items), ElementsAre("a-2-kick", "a-2-push", "a-2-hug", "a-2-m0", "a-2-m1"));
+  EXPECT_EQ((*items)[3].labels.size(), 3u);
 }
 
 TEST(Plan, MixesDifferFromLeaderToLeaderAndNotFromRunToRun) {
@@ -230,22 +226,13 @@ TEST(Plan, InvalidCombinationsAreRejected) {
               refused("m:2: labels: expected classes of sbu@2 (kick, push, hug), got \"waltz\""));
 }
 
-TEST(ToRequest, KeyframesFallOnFrames) {
-  const auto items = PlanOf(
-      "reactions { schedule { keyframes { at: 0 labels { weights { key: 'kick' value: 1 } } }"
-      " keyframes { at: 0.5 labels { weights { key: 'push' value: 1 } } }"
-      " keyframes { at: 1 labels { weights { key: 'hug' value: 1 } } } } }");
-  ASSERT_THAT(items, IsOk());
-  LoadedLeader leader;
-  leader.clip.poses = motion::Poses(5, 1);
-  const SynthesisRequest request = ToRequest((*items)[0], Recipe(), Model("sbu"), leader, 0);
-  ASSERT_EQ(request.keyframes.size(), 3u);
-  EXPECT_EQ(request.keyframes[1].frame, 2);
-  EXPECT_EQ(request.keyframes[2].frame, 4);
+TEST(ToRequest, IsBulkAndNamedByTheItem) {
+  const Item item = (*PlanOf(kKick))[0];
+  const SynthesisRequest request = ToRequest(item, Recipe(), Model("sbu"), LoadedLeader(), 0);
   EXPECT_EQ(request.priority, Priority::kBulk);
-  EXPECT_EQ(request.request_id, "batch-" + (*items)[0].id);
-  leader.clip.poses = motion::Poses(1, 1);
-  EXPECT_EQ(ToRequest((*items)[0], Recipe(), Model("sbu"), leader, 0).keyframes.size(), 1u);
+  EXPECT_EQ(request.request_id, "batch-" + item.id);
+  EXPECT_EQ(ToRequest(item, Recipe(), Model("sbu"), LoadedLeader(), 2).request_id,
+            "batch-" + item.id + "-2");
 }
 
 TEST(Shard, EveryItemBelongsToOneShardOfSimilarSize) {
@@ -272,18 +259,19 @@ TEST(Shard, IsParsedStrictly) {
   }
 }
 
-TEST(FitFileName, LongPartsAreTruncatedWithADigest) {
-  for (const std::string& name : {std::string("walks/a-2-kick"), std::string(200, 'x')}) {
-    EXPECT_EQ(FitFileName(name), name);
-  }
-  const std::string fitting = FitFileName("walks/" + std::string(300, 'x') + "/a-kick");
-  EXPECT_THAT(fitting, MatchesRegex("walks/x{120}_[0-9a-f]{16}/a-kick"));
-  EXPECT_NE(fitting, FitFileName("walks/" + std::string(301, 'x') + "/a-kick"));
-  std::string accents = "x", deep;  // two bytes a character, which are not split
-  for (int i = 0; i < 200; ++i) accents += "\xc3\xa9";
-  EXPECT_THAT(FitFileName(accents), StartsWith(accents.substr(0, 119) + "_"));
-  for (int i = 0; i < 3000; ++i) deep += "a/";
-  EXPECT_THAT(FitFileName(deep + "b"), MatchesRegex("(a_){60}_[0-9a-f]{16}"));
+TEST(Plan, NamesThatFileSystemsCannotHoldAreRejected) {
+  const auto named = [](const std::string& id) {
+    return PlanOf(kKick, "leader\tid\na.bvh\t" + id + "\n").status();
+  };
+  EXPECT_THAT(named(std::string(195, 'x')), IsOk());
+  EXPECT_THAT(named("walks/" + std::string(196, 'x')),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("m:2: name: expected at most 1000 bytes in parts of 200, got 207 "
+                                 "in parts of 201")));
+  std::string deep = "b";
+  for (int i = 0; i < 600; ++i) deep += "/b";
+  EXPECT_THAT(named(deep),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("in parts of 6")));
 }
 
 // Two items of each leader.

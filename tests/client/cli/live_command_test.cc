@@ -18,6 +18,7 @@
 #include "nlohmann/json.hpp"
 #include "tests/client/support/fake_service.h"
 #include "tests/client/support/live_mirror.h"
+#include "tests/client/support/text_input.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/temporary_folder.h"
@@ -88,13 +89,14 @@ class LiveCommandTest : public ::testing::Test {
     std::vector<std::string> arguments = {"live", "--server", server_.address()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     if (!labelled_) arguments.insert(arguments.end(), {"--label", "hug=0"});
-    ProgramEnvironment environment{
+    const test::TextInput in(in_);
+    const ProgramEnvironment environment{
         [](const ClientOptions& options) -> absl::StatusOr<Client> {
           absl::StatusOr<std::shared_ptr<Connection>> live = internal::Connect(options);
           if (!live.ok()) return live.status();
           return Client(std::make_shared<ModelConnection>(*std::move(live)));
         },
-        &out_, &err_, &in_};
+        &out_, &err_, in.descriptor()};
     return RunProgram(arguments, environment);
   }
 
@@ -125,7 +127,7 @@ class LiveCommandTest : public ::testing::Test {
   LiveMirror mirror_;  // outlives the server
   FakeServer server_;
   bool labelled_ = false;
-  std::istringstream in_;
+  std::string in_;
   std::ostringstream out_, err_;
 };
 
@@ -194,7 +196,7 @@ TEST_F(LiveCommandTest, FieldsOfWholeClipsAreRejected) {
 }
 
 TEST_F(LiveCommandTest, LinesInLinesOut) {
-  in_.str(Lines(kFrames));
+  in_ = Lines(kFrames);
   ASSERT_EQ(Run({"--from", "-", "--to", "-"}), 0) << err_.str();
   const std::vector<std::string> lines = absl::StrSplit(out_.str(), '\n', absl::SkipEmpty());
   ASSERT_EQ(lines.size(), kFrames + 1u);
@@ -208,17 +210,16 @@ TEST_F(LiveCommandTest, LinesInLinesOut) {
 }
 
 TEST_F(LiveCommandTest, AnInputThatEndsEarlyIsAnsweredSoFar) {
-  in_.str(Lines(7));
+  in_ = Lines(7);
   ASSERT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), 0) << err_.str();
   EXPECT_EQ(ReadFollower("follower.csv").frame_count(), 7);
-  in_.clear();
-  in_.str(Lines(0));
+  in_ = Lines(0);
   ASSERT_EQ(Run({"--from", "-", "--to", Path("none.csv")}), 0) << err_.str();
   EXPECT_THAT(out_.str(), HasSubstr("none.csv: not written, no frames\n"));
 }
 
 TEST_F(LiveCommandTest, AMalformedLineIsNamedAndTheFramesBeforeItAreWritten) {
-  in_.str(Lines(7) + "{\"positions\": 3}\n");
+  in_ = Lines(7) + "{\"positions\": 3}\n";
   EXPECT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), kExitBadInput);
   EXPECT_THAT(err_.str(), HasSubstr("standard input: line 9: positions: expected"));
   EXPECT_EQ(ReadFollower("follower.csv").frame_count(), 7);

@@ -75,13 +75,9 @@ class RequestFileTest : public ::testing::Test {
   const std::filesystem::path file_ = folder_ / "request.textproto";
 };
 
-TEST_F(RequestFileTest, HasEveryFieldOfARequest) {
+TEST_F(RequestFileTest, HasEveryFieldOfARequestButTheLeader) {
   const absl::StatusOr<SynthesisRequest> request = Read(R"(
       model { name: "sbu" version: 2 }
-      leader {
-        joint_names: ["torso", "head"] frame_rate_hz: 30 unit: LENGTH_UNIT_METRES
-        up_axis: UP_AXIS_Y_UP frame_count: 2 positions: [0, 1, 0, 0, 2, 0, 1, 1, 0, 1, 2, 0]
-      }
       label_keyframes { frame: 0 label_vector { weights { interaction_class: "hug" weight: 1 } } }
       label_keyframes { frame: 9 label_vector { weights { interaction_class: "kick" weight: -1 } } }
       follower_start { root_position { x: 1 y: 1.1 z: -2 } }
@@ -92,9 +88,6 @@ TEST_F(RequestFileTest, HasEveryFieldOfARequest) {
   ASSERT_THAT(request, IsOk());
   EXPECT_EQ(request->model.name, "sbu");
   EXPECT_EQ(request->model.version, 2);
-  EXPECT_THAT(request->leader.joint_names, ElementsAre("torso", "head"));
-  ASSERT_EQ(request->leader.frame_count(), 2);
-  EXPECT_EQ(request->leader.at(1, 1), (motion::Vec3{1, 2, 0}));
   EXPECT_TRUE(request->weights.empty());
   ASSERT_THAT(request->keyframes, SizeIs(2));
   EXPECT_EQ(request->keyframes[1].frame, 9);
@@ -123,7 +116,6 @@ TEST_F(RequestFileTest, AbsentFieldsHaveTheirDefaults) {
   EXPECT_EQ(request->weights[0].interaction_class, "hug");
   EXPECT_THAT(std::get<1>(*request->follower_start),
               ElementsAre(motion::Vec3{1, 2, 3}, motion::Vec3{4, 5, 6}));
-  EXPECT_TRUE(request->leader.poses.empty());
   EXPECT_EQ(request->variety, 1);
   EXPECT_EQ(request->candidates, 1);
   EXPECT_EQ(request->clean_up, std::nullopt);
@@ -136,11 +128,7 @@ TEST_F(RequestFileTest, ErrorsNameTheFileAndThePlaceOrTheField) {
       {"seed: 'x'", "request.textproto: line 1:7: "},
       {"reply_joint_names: 'head'", "reply_joint_names: expected none"},
       {"priority: PRIORITY_UNSPECIFIED", "priority: expected PRIORITY_INTERACTIVE or"},
-      {"leader { unit: LENGTH_UNIT_MILLIMETRES }", "leader.unit: expected LENGTH_UNIT_METRES"},
-      {"leader { unit: LENGTH_UNIT_METRES up_axis: UP_AXIS_Z_UP }",
-       "leader.up_axis: expected UP_AXIS_Y_UP, got UP_AXIS_Z_UP"},
-      {"leader { unit: LENGTH_UNIT_METRES up_axis: UP_AXIS_Y_UP joint_names: 'a' frame_count: 1 }",
-       "leader.positions: expected 3 values (3 for each joint and frame), got 0"}};
+      {"leader { frame_count: 1 }", "leader: expected none: a flag names its file"}};
   for (const auto& [text, message] : cases) {
     EXPECT_THAT(Read(text), StatusIs(kInvalid, HasSubstr(message))) << text;
   }

@@ -14,6 +14,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "nlohmann/json.hpp"
+#include "tests/client/support/text_input.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
@@ -55,7 +56,7 @@ std::string Frame(const json& more = json::object()) {
 class Text {
  public:
   explicit Text(const std::string& text)
-      : in_(text), source_(ReadLinesOf(in_), {motion::SbuSkeleton(), {}, false}) {}
+      : in_(text), source_(in_.descriptor(), {motion::SbuSkeleton(), {}, false}) {}
   JsonLinesSource* operator->() { return &source_; }
 
   // Opens it and reads everything: the events, or the first error.
@@ -78,7 +79,7 @@ class Text {
   }
 
  private:
-  std::istringstream in_;
+  const test::TextInput in_;
   JsonLinesSource source_;
 };
 

@@ -4,7 +4,6 @@
 #include <thread>
 #include <vector>
 
-#include "client/batch/flow/queues.h"
 #include "gtest/gtest.h"
 
 namespace duet::client::batch::flow {
@@ -54,63 +53,6 @@ TEST(CallGate, EndsIfServersStayAway) {
   gate.Finish(*gate.Start(), CallEnd::kAway, std::nullopt);
   EXPECT_TRUE(gate.state().lost_patience);
   EXPECT_FALSE(gate.Start().has_value());
-}
-
-TEST(BoundedQueue, EveryValueIsTakenOnce) {
-  BoundedQueue<int> queue(2);
-  std::atomic<int> sum{0};
-  std::vector<std::thread> takers;
-  for (int i = 0; i < 3; ++i) {
-    takers.emplace_back([&] {
-      while (const auto value = queue.Take()) sum += *value;
-    });
-  }
-  for (int i = 1; i <= 100; ++i) EXPECT_TRUE(queue.Put(i));
-  queue.Close();
-  for (std::thread& taker : takers) taker.join();
-  EXPECT_EQ(sum, 5050);
-}
-
-TEST(BoundedQueue, PutBlocksWhileFullUntilStop) {
-  BoundedQueue<int> queue(1);
-  EXPECT_TRUE(queue.Put(1));
-  std::thread putting([&queue] { EXPECT_FALSE(queue.Put(2)); });
-  queue.Stop();
-  putting.join();
-  EXPECT_FALSE(queue.Take().has_value());
-}
-
-TEST(BoundedQueue, GatherReturnsEarlyWhenFull) {
-  BoundedQueue<int> queue(4);
-  for (int i = 0; i < 3; ++i) queue.Put(i);
-  // More than half full: there is nothing to wait for.
-  EXPECT_EQ(queue.Gather(hours(1)), (std::vector<int>{0, 1, 2}));
-  queue.Put(3);
-  EXPECT_EQ(queue.Gather(milliseconds(0)), (std::vector<int>{3}));
-  std::thread late([&queue] {
-    queue.Put(4);
-    queue.Put(5);
-    queue.Close();
-  });
-  EXPECT_EQ(queue.Gather(hours(1)), (std::vector<int>{4, 5}));
-  late.join();
-  EXPECT_TRUE(queue.Gather(hours(1)).empty());
-}
-
-TEST(BoundedQueue, CapacityLimitsTheTotalCost) {
-  BoundedQueue<int> queue(10);
-  queue.Put(1, 100);  // more than there is room for: alone
-  std::atomic<bool> put{false};
-  std::thread putting([&] {
-    queue.Put(2, 6);
-    queue.Put(3, 6);
-    put = true;
-  });
-  EXPECT_EQ(queue.Take(), 1);
-  EXPECT_EQ(queue.Take(), 2);
-  EXPECT_EQ(queue.Take(), 3);
-  putting.join();
-  EXPECT_TRUE(put);
 }
 
 }  // namespace

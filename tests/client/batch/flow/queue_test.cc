@@ -1,4 +1,6 @@
 #include <atomic>
+#include <chrono>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -8,8 +10,11 @@
 namespace duet::client::batch::flow {
 namespace {
 
-TEST(WorkQueue, ReturnedValuesComeFirst) {
-  WorkQueue<int> queue(4);
+using std::chrono::hours;
+using std::chrono::milliseconds;
+
+TEST(Queue, ReturnedValuesComeFirst) {
+  Queue<int> queue(4);
   queue.Put(1);
   queue.Put(2);
   EXPECT_EQ(queue.Take(), 1);
@@ -18,8 +23,8 @@ TEST(WorkQueue, ReturnedValuesComeFirst) {
   EXPECT_EQ(queue.Take(), 2);
 }
 
-TEST(WorkQueue, EndsWhenAllValuesAreDone) {
-  WorkQueue<int> queue(4);
+TEST(Queue, EndsWhenAllValuesAreDone) {
+  Queue<int> queue(4);
   queue.Put(1);
   queue.Close();
   EXPECT_EQ(queue.Take(), 1);
@@ -34,8 +39,8 @@ TEST(WorkQueue, EndsWhenAllValuesAreDone) {
   EXPECT_FALSE(queue.Take().has_value());
 }
 
-TEST(WorkQueue, StopDropsQueuedValuesAndWaitsForTakenOnes) {
-  WorkQueue<int> queue(2);
+TEST(Queue, StopDropsQueuedValuesAndWaitsForTakenOnes) {
+  Queue<int> queue(2);
   queue.Put(1);
   queue.Put(2);
   EXPECT_EQ(queue.Take(), 1);
@@ -53,9 +58,9 @@ TEST(WorkQueue, StopDropsQueuedValuesAndWaitsForTakenOnes) {
   EXPECT_FALSE(queue.Take().has_value());
 }
 
-TEST(WorkQueue, EveryValueIsTakenUntilItIsDone) {
+TEST(Queue, EveryValueIsTakenUntilItIsDone) {
   constexpr int kValues = 200;
-  WorkQueue<int> queue(3);
+  Queue<int> queue(3);
   std::atomic<int> done{0};
   std::vector<std::thread> threads;
   for (int i = 0; i < 4; ++i) {
@@ -74,6 +79,48 @@ TEST(WorkQueue, EveryValueIsTakenUntilItIsDone) {
   queue.Close();
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(done, kValues);
+}
+
+TEST(Queue, PutBlocksWhileFullUntilStop) {
+  Queue<int> queue(1);
+  EXPECT_TRUE(queue.Put(1));
+  std::thread putting([&queue] { EXPECT_FALSE(queue.Put(2)); });
+  queue.Stop();
+  putting.join();
+  EXPECT_FALSE(queue.Take().has_value());
+}
+
+TEST(Queue, GatherReturnsEarlyWhenFull) {
+  Queue<int> queue(4);
+  for (int i = 0; i < 3; ++i) queue.Put(i);
+  // More than half full: there is nothing to wait for.
+  EXPECT_EQ(queue.Gather(hours(1)), (std::vector<int>{0, 1, 2}));
+  queue.Put(3);
+  EXPECT_EQ(queue.Gather(milliseconds(0)), (std::vector<int>{3}));
+  std::thread late([&queue] {
+    queue.Put(4);
+    queue.Put(5);
+    queue.Close();
+  });
+  EXPECT_EQ(queue.Gather(hours(1)), (std::vector<int>{4, 5}));
+  late.join();
+  EXPECT_TRUE(queue.Gather(hours(1)).empty());
+}
+
+TEST(Queue, CapacityLimitsTheTotalCost) {
+  Queue<int> queue(10);
+  queue.Put(1, 100);  // more than there is room for: alone
+  std::atomic<bool> put{false};
+  std::thread putting([&] {
+    queue.Put(2, 6);
+    queue.Put(3, 6);
+    put = true;
+  });
+  EXPECT_EQ(queue.Take(), 1);
+  EXPECT_EQ(queue.Take(), 2);
+  EXPECT_EQ(queue.Take(), 3);
+  putting.join();
+  EXPECT_TRUE(put);
 }
 
 }  // namespace
