@@ -14,8 +14,8 @@ from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldV
                                 InvalidRequestError, MalformedReplyError, ModelNotFoundError,
                                 NotPermittedError, RequestMismatchError, ServerBusyError,
                                 UnavailableError)
-from duet_motion.files import MotionFileError, read_motion, read_pair, write_motion, write_page
-from duet_motion.levelling import estimate_vertical
+from duet_motion.files import (MotionFileError, estimate_vertical, read_motion, read_pair, write_motion,
+                               write_page)
 from duet_motion.live import (LiveHeader, LiveNotice, LivePart, LiveRequest,
                               LiveSummary)
 from duet_motion.motion import Motion

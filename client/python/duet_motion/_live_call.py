@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import collections
-from typing import Deque, Iterable, List, Optional
+from typing import Deque, Dict, Iterable, List, Mapping, Optional, Tuple
 
 import grpc
 import numpy as np
 
 from duet_motion._call import Attempts, CallSettings
-from duet_motion._labels import LabelTrack
-from duet_motion._live_reply import LiveReply
-from duet_motion._reply import malformed
-from duet_motion._rotations import LiveRotations
-from duet_motion._wire import CLEAN_UP, UNITS, UP_AXES
+from duet_motion._reply import LiveRotations, check_format, end_of_stream, malformed
 from duet_motion.errors import DuetError, make_error
 from duet_motion.live import LiveHeader, LiveNotice, LivePart, LiveRequest, LiveSummary
-from duet_motion.motion import Positions
-from duet_motion.request import (Labels, check_kind, direction, fill, fill_start, floats,
+from duet_motion.motion import UNITS, UP_AXES, Motion, Positions
+from duet_motion.request import (CLEAN_UP, Labels, check_kind, direction, fill, fill_start, floats,
                                  to_selector)
 from duet_motion.result import FrameRun
 from duet_motion.retry import is_retryable
@@ -33,6 +29,8 @@ _NOTICES = {
     live_pb2.LIVE_NOTICE_KIND_SKIPPED: "skipped",
     live_pb2.LIVE_NOTICE_KIND_DRAINING: "draining",
 }
+
+Keyframe = Tuple[int, Dict[str, float]]
 
 
 class _Frames:
@@ -57,6 +55,118 @@ class _Frames:
         """The values of frames first to before end."""
         poses = [self._poses[frame - self.first] for frame in range(first, end)]
         return floats(np.stack(poses)) if poses else []
+
+
+class LabelTrack:
+    """The label vector of a session over time, as keyframes: linear between them, constant before the first and after the last."""
+
+    def __init__(self, keyframes: Mapping[int, Labels]) -> None:
+        self._keys: List[Keyframe] = sorted(
+            (int(frame), {name: float(weight) for name, weight in labels.items()})
+            for frame, labels in keyframes.items())
+
+    def at(self, frame: int) -> Dict[str, float]:
+        """The weights at a frame; empty without keyframes."""
+        before = [key for key in self._keys if key[0] <= frame]
+        after = [key for key in self._keys if key[0] > frame]
+        if not before or not after:
+            key = before[-1] if before else after[0] if after else (0, {})
+            return dict(key[1])
+        (first, old), (last, new) = before[-1], after[0]
+        share = (frame - first) / (last - first)
+        return {name: old.get(name, 0.0) + (new.get(name, 0.0) - old.get(name, 0.0)) * share
+                for name in {**old, **new}}
+
+    def change(self, frame: int, labels: Labels, ease_frames: int) -> None:
+        """Changes the weights linearly from those at ``frame`` to ``labels`` within
+        ``ease_frames``, and drops the keyframes after ``frame``."""
+        last = frame if ease_frames else frame - 1  # the last frame with the old weights
+        old = self.at(last)
+        self._keys = [key for key in self._keys if key[0] < last]
+        if last >= 0 and old:
+            self._keys.append((last, old))
+        self._keys.append((frame + ease_frames,
+                           {name: float(weight) for name, weight in labels.items()}))
+
+    def since(self, frame: int) -> List[Keyframe]:
+        """Forgets the keyframes that do not apply at ``frame`` or later, and returns the others."""
+        past = [at for at, _ in self._keys if at <= frame]
+        self._keys = [key for key in self._keys if not past or key[0] >= past[-1]]
+        return list(self._keys)
+
+
+class LiveReply:
+    """Checks the responses of one stream message by message."""
+
+    def __init__(self, leader: Motion, first_frame: int) -> None:
+        self._leader = leader
+        self.next_frame = first_frame
+        """Index of the follower's next frame."""
+        self._first_frame = first_frame
+        self.header: Optional[live_pb2.LiveHeader] = None
+        self.summary: Optional[live_pb2.LiveSummary] = None
+
+    @property
+    def frame_count(self) -> int:
+        """Number of frames of this stream so far."""
+        return self.next_frame - self._first_frame
+
+    def check_order(self, kind: Optional[str]) -> None:
+        """Raises MalformedReplyError if a payload of this kind must not come now."""
+        if kind is None:
+            raise malformed("a message without a payload")
+        if self.summary is not None:
+            raise malformed("a message after the summary")
+        if (self.header is None) != (kind == "header"):
+            raise malformed("a second header" if kind == "header" else f"{kind} before the header")
+
+    def accept_header(self, header: live_pb2.LiveHeader) -> None:
+        check_format(header, self._leader)
+        if header.first_frame != self._first_frame:
+            raise malformed(f"header.first_frame: expected {self._first_frame}, got "
+                            f"{header.first_frame}")
+        if header.history_frames < 1:
+            raise malformed("header.history_frames: expected 1 or more, got 0")
+        self.header = header
+
+    def accept_frames(self, frames: live_pb2.FollowerFrames, sent: int) -> Positions:
+        """Returns the final frames. ``sent``: number of leader frames sent so far."""
+        if frames.first_frame != self.next_frame:
+            raise malformed(f"frames.first_frame: expected {self.next_frame}, got "
+                            f"{frames.first_frame}")
+        left = sent - self.next_frame
+        if not 1 <= frames.frame_count <= left:
+            raise malformed(f"frames.frame_count: expected 1 to {left}, got {frames.frame_count}")
+        if frames.leader_frame >= sent:
+            raise malformed(f"frames.leader_frame: expected less than the {sent} frames sent, got "
+                            f"{frames.leader_frame}")
+        positions = self.poses("frames.positions", frames.positions)
+        if len(positions) != frames.frame_count:
+            raise malformed(f"frames.positions: expected {frames.frame_count} frames, got "
+                            f"{len(positions)}")
+        self.next_frame += frames.frame_count
+        return positions
+
+    def poses(self, field: str, values: object) -> Positions:
+        """Values as ``[frames, joints, 3]``; raises MalformedReplyError."""
+        flat = np.array(values, dtype=np.float32)
+        if flat.size % (self._leader.joint_count * 3):
+            raise malformed(f"{field}: expected {self._leader.joint_count} joints of 3 values for "
+                            f"each frame, got {flat.size} values")
+        if not np.isfinite(flat).all():
+            raise malformed(f"{field}: expected finite values, got others")
+        return flat.reshape(-1, self._leader.joint_count, 3)
+
+    def accept_summary(self, summary: live_pb2.LiveSummary) -> None:
+        if summary.frame_count != self.frame_count:
+            raise malformed(f"summary.frame_count: expected {self.frame_count}, got "
+                            f"{summary.frame_count}")
+        self.summary = summary
+
+    def end(self, error: Optional[DuetError]) -> Optional[DuetError]:
+        """Handles the end of the stream; returns None if the reply is complete, else its error."""
+        return end_of_stream(error, self.summary is not None, self.header is not None,
+                             f"the session broke off before frame {self.next_frame}")
 
 
 class LiveCall:

@@ -17,6 +17,7 @@ import grpc
 import grpc.aio
 
 from duet_motion import _channel
+from duet_motion import client as blocking
 from duet_motion._call import Attempts, SynthesisCall
 from duet_motion._live_call import LiveCall
 from duet_motion._session import LiveSession
@@ -67,51 +68,28 @@ class Client(_channel.Connected):
         await self.close()
 
     async def list_models(self, *, timeout: Optional[float] = None) -> List[ModelInfo]:
-        """Lists every model version being served, by name, newest version first.
-
-        Args:
-            timeout: seconds for the whole call. None: the client's.
-
-        Raises:
-            DuetError: the call failed.
-        """
         response = await self._unary(self._stub.ListModels, synthesis_pb2.ListModelsRequest(),
                                      timeout)
         return [model_from_proto(model) for model in response.models]
 
+    list_models.__doc__ = blocking.Client.list_models.__doc__
+
     async def get_model(self, model: str = "", *, timeout: Optional[float] = None) -> ModelDetails:
-        """Returns one model version and its request limits.
-
-        Args:
-            model: ``"sbu"``, ``"sbu@3"`` for a version, ``"sbu:stable"`` for a version label;
-                empty: the server's default.
-            timeout: seconds for the whole call. None: the client's.
-
-        Raises:
-            DuetError: the call failed; ModelNotFoundError if there is no such model.
-        """
         request = synthesis_pb2.GetModelRequest(model=to_selector(model))
         return details_from_proto(await self._unary(self._stub.GetModel, request, timeout))
 
+    get_model.__doc__ = blocking.Client.get_model.__doc__
+
     def synthesize_request(
             self, request: SynthesisRequest) -> Coroutine[Any, Any, SynthesisResult]:
-        """Returns the whole follower.
-
-        Args:
-            request: the request.
-
-        Raises:
-            DuetError: the call failed.
-        """
         return self._synthesize(SynthesisCall(request, self._settings))
 
-    def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
-        """Streams the follower's frames as they arrive.
+    synthesize_request.__doc__ = blocking.Client.synthesize_request.__doc__
 
-        Args:
-            request: the request.
-        """
+    def stream_request(self, request: SynthesisRequest) -> SynthesisStream:
         return self._stream(SynthesisCall(request, self._settings))
+
+    stream_request.__doc__ = blocking.Client.stream_request.__doc__
 
     def live_request(self, request: LiveRequest) -> LiveSession:
         """Answers a leader while it still moves. Use the session with ``async with``.

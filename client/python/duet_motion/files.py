@@ -11,15 +11,16 @@ import json
 import os
 import pathlib
 import re
+import reprlib
 import shutil
 import subprocess
 import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
-from duet_motion.motion import Motion
-from duet_motion.result import SynthesisResult
+from duet_motion.motion import Motion, axes_from_y_up
+from duet_motion.result import SynthesisResult, VerticalEstimate
 
-__all__ = ["MotionFileError", "read_motion", "read_pair", "write_motion", "write_page"]
+__all__ = ["MotionFileError", "estimate_vertical", "read_motion", "read_pair", "write_motion", "write_page"]
 
 Path = Union[str, "os.PathLike[str]"]
 Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
@@ -130,6 +131,34 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
         sources = _documents(folder, list(motions.values()))
         shown = [f"{name}={source}" for name, source in zip(motions, sources)]
         run("view", *shown, *(["--title", title] if title else []), "--out", _word(path), "--quiet")
+
+
+def estimate_vertical(leader: Motion, *others: Motion) -> VerticalEstimate:
+    """Estimates the vertical of the camera that captured all of these people, like ``duet inspect``.
+
+    More people and longer motions give stronger evidence, above all people who turn or face different
+    ways. Everybody must be from one camera in one position.
+
+    >>> camera = duet.estimate_vertical(*duet.read_pair("pair.bvh"))
+    >>> client.synthesize(leader, {"hug": 1}, level=camera)      # levels only if the evidence is strong
+
+    Args:
+        leader: a person with the joints of Duet's skeleton, or with joints whose names are recognised;
+            metres or millimetres. The estimate is in this motion's axes.
+        others: further people.
+
+    Raises:
+        ValueError: a motion has no joints that are recognised, or is ``"sbu-normalised"``.
+        FileNotFoundError: the program `duet` is missing.
+    """
+    people = []
+    for person in (leader, *others):
+        if not isinstance(person, Motion):
+            raise ValueError(f"leader: expected a duet_motion.Motion, got {reprlib.repr(person)}")
+        people.append(person.converted("metres", "y-up"))
+    values = inspect(people)["tilt"]
+    values["up"] = axes_from_y_up(values["up"], leader.up_axis)
+    return VerticalEstimate(**values)
 
 
 def inspect(people: List[Motion]) -> Dict[str, Any]:

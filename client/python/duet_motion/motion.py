@@ -11,7 +11,13 @@ from typing import Any, Iterable, Optional, Sequence, Tuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from duet_motion._wire import UNITS, UP_AXES
+from duet_motion.v1 import motion_pb2
+
+# The names of units and axes, and their values on the wire.
+UNITS = {"metres": motion_pb2.LENGTH_UNIT_METRES, "millimetres": motion_pb2.LENGTH_UNIT_MILLIMETRES,
+         "sbu-normalised": motion_pb2.LENGTH_UNIT_SBU_NORMALISED}
+UP_AXES = {"y-up": motion_pb2.UP_AXIS_Y_UP, "z-up": motion_pb2.UP_AXIS_Z_UP,
+           "y-down": motion_pb2.UP_AXIS_Y_DOWN}
 
 Positions = npt.NDArray[np.float32]
 _AXES = "xyz"
@@ -55,12 +61,8 @@ class Motion:
                  unit: str = "metres", up_axis: str = "y-up") -> None:
         names = _checked_names(joint_names)
         kept = _checked_positions(positions, names).astype(np.float32)
-        self._keep(kept, names, frame_rate_hz, unit, up_axis)
-
-    def _keep(self, positions: Positions, joint_names: Tuple[str, ...], frame_rate_hz: float,
-              unit: str, up_axis: str) -> None:
-        positions.setflags(write=False)
-        values = {"positions": positions, "joint_names": joint_names,
+        kept.setflags(write=False)
+        values = {"positions": kept, "joint_names": names,
                   "frame_rate_hz": checked_number("frame_rate_hz", frame_rate_hz, above=0),
                   "unit": checked_choice("unit", unit, UNITS),
                   "up_axis": checked_choice("up_axis", up_axis, UP_AXES)}
@@ -74,16 +76,6 @@ class Motion:
     @property
     def joint_count(self) -> int:
         return int(self.positions.shape[1])
-
-    @property
-    def duration_seconds(self) -> float:
-        """The time from the first frame to the last."""
-        return max(self.frame_count - 1, 0) / self.frame_rate_hz
-
-    @property
-    def times(self) -> npt.NDArray[np.float64]:
-        """The time of every frame in seconds, ``[frames]``."""
-        return np.arange(self.frame_count) / self.frame_rate_hz
 
     def joint(self, name: str) -> Positions:
         """Returns the positions of one joint, ``[frames, 3]`` in ``unit``.
@@ -178,15 +170,6 @@ class Motion:
     def __repr__(self) -> str:
         return (f"Motion({self.frame_count} frames at {self.frame_rate_hz:g} Hz, "
                 f"{self.joint_count} joints, {self.unit}, {self.up_axis})")
-
-
-def adopt(positions: Positions, joint_names: Sequence[str], frame_rate_hz: float) -> Motion:
-    """A motion in metres, y up, like the constructor's but without a copy: the caller gives up
-    ``positions``."""
-    motion = Motion.__new__(Motion)
-    names = _checked_names(joint_names)
-    motion._keep(_checked_positions(positions, names), names, frame_rate_hz, "metres", "y-up")
-    return motion
 
 
 def axes_from_y_up(vector: Sequence[float], up_axis: str) -> Tuple[float, float, float]:

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Union
 import numpy as np
 import numpy.typing as npt
 
-from duet_motion._wire import CLEAN_UP, PRIORITIES, UNITS, UP_AXES
-from duet_motion.levelling import estimate_vertical
-from duet_motion.motion import (Motion, checked_array, checked_number, finite_number,
-                               first_not_finite)
+from duet_motion.files import estimate_vertical
+from duet_motion.motion import (UNITS, UP_AXES, Motion, checked_array, checked_number, finite_number,
+                                first_not_finite)
 from duet_motion.result import VerticalEstimate
 from duet_motion.v1 import model_pb2, motion_pb2, reaction_pb2, synthesis_pb2
 
@@ -24,6 +23,9 @@ if TYPE_CHECKING:
 Labels = Mapping[str, float]
 """Weights by interaction class, from -2 to 2: 1 requests a class, 0 is neutral, -1 avoids it."""
 
+PRIORITIES = {"interactive": synthesis_pb2.PRIORITY_INTERACTIVE, "bulk": synthesis_pb2.PRIORITY_BULK}
+CLEAN_UP = {None: reaction_pb2.CLEAN_UP_UNSPECIFIED, True: reaction_pb2.CLEAN_UP_ON,
+            False: reaction_pb2.CLEAN_UP_OFF}
 LEVELS = ("auto", "off")
 
 _REQUEST_ID = re.compile(r"[!-~]{1,128}")
@@ -308,16 +310,11 @@ def check_answering(request: Union[SynthesisRequest, LiveRequest]) -> None:
 
 
 def check_kind(request: object, kind: type, name: str = "request") -> None:
-    """Raises TypeError unless the request is of its class, with how to make one."""
+    """Raises TypeError unless the request is of its class."""
     if isinstance(request, kind):
         return
-    hint = ""
-    if isinstance(request, Mapping):
-        hint = f"; make one of these fields: duet_motion.{kind.__name__}(**fields)"
-    elif isinstance(request, (tuple, list)):
-        hint = f"; make one of these values: duet_motion.{kind.__name__}(*values)"
     raise TypeError(f"{name}: expected a duet_motion.{kind.__name__}, got "
-                    f"{type(request).__name__} {short(request)}{hint}")
+                    f"{type(request).__name__} {short(request)}")
 
 
 def check_request_id(request_id: str) -> None:

@@ -1,7 +1,7 @@
-"""Arrays of research: the layouts of HumanML3D, InterGen and Inter-X, and body models of the SMPL family.
+"""Arrays of research: the layouts of HumanML3D, InterGen and Inter-X.
 
 >>> leader, = duet.research.read("000001.npy", layout="humanml3d")
->>> duet.research.write("pair.npy", [leader, follower], layout="intergen-262")
+>>> duet.research.write("pair.npy", [leader, follower], layout="intergen")
 
 docs/guides/research_layouts.md lists shapes, rates and what the features keep. People have the 22 body joints
 that SMPL, SMPL+H and SMPL-X share (:data:`JOINTS`). Write them to a .json or .csv file to read them with
@@ -24,26 +24,15 @@ Path = Union[str, "os.PathLike[str]"]
 LAYOUTS: Mapping[str, float] = {"humanml3d": 20.0, "humanml3d-263": 20.0, "intergen": 30.0,
                                 "intergen-262": 30.0, "inter-x": 30.0}
 """The layouts and their frame rates."""
-_WRITTEN = tuple(layout for layout in LAYOUTS if layout != "humanml3d-263")
+_WRITTEN = ("humanml3d", "intergen", "inter-x")
 
 # Source: Loper et al. 2015 (SMPL), Pavlakos et al. 2019 (SMPL-X). A foot is its ball.
 JOINTS: Tuple[str, ...] = (
     "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle",
     "right_ankle", "spine3", "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head",
     "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist")
-PARENTS = (-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19)
-_PELVIS, _LEFT_HIP, _RIGHT_HIP = 0, 1, 2
-_FEET = [7, 10, 8, 11]  # left ankle and ball, right ankle and ball
 _INTERHUMAN = 62 * 3 + 51 * 6
 _MAX_POSITION = 1e7
-
-# InterGen: the direction of the bone that ends at each joint in a T pose that faces z.
-_T_REST = np.tile([0.0, 1.0, 0.0], (22, 1))
-_T_REST[[1, 2]], _T_REST[[13, 14]] = [(0.6, -0.8, 0), (-0.6, -0.8, 0)], [(0.6, 0.8, 0), (-0.6, 0.8, 0)]
-_T_REST[[16, 18, 20]], _T_REST[[17, 19, 21]] = (1, 0, 0), (-1, 0, 0)
-_T_REST[[4, 5, 7, 8]] = (0, -1, 0)
-_T_REST[[10, 11]] = np.array([0, -0.4, 0.9]) / np.hypot(0.4, 0.9)
-_PRIOR_WEIGHT = 1e-3  # of a joint's rotation to be its parent's: decides the twist of a single bone
 
 
 def read(source: Union[Path, npt.ArrayLike], layout: str = "",
@@ -100,7 +89,7 @@ def write(path: Path, people: Sequence[Motion], layout: str) -> None:
     Args:
         path: of the file.
         people: one person or two.
-        layout: one of :data:`LAYOUTS`.
+        layout: see :func:`to_array`.
 
     Raises:
         ValueError: see :func:`to_array`.
@@ -115,65 +104,18 @@ def to_array(people: Sequence[Motion], layout: str) -> Positions:
 
     Args:
         people: one person or two, in metres or millimetres.
-        layout: one of :data:`LAYOUTS` but ``"humanml3d-263"``: HumanML3D's own program makes these features of
+        layout: ``"humanml3d"``, ``"intergen"`` or ``"inter-x"``: the data sets' own programs make features of
             the positions.
 
     Raises:
-        ValueError: joints are missing, or there is less than one frame of features.
+        ValueError: joints are missing.
     """
     rate = LAYOUTS[checked_choice("layout", layout, _WRITTEN)]
     bodies = [to_body(person).resampled(rate).positions.astype(np.float64) for person in people]
     if not 1 <= len(bodies) <= 2:
         raise ValueError(f"people: expected one or two, got {len(bodies)}")
-    if layout == "intergen-262":
-        if min(map(len, bodies)) < 2:
-            raise ValueError(f"frames: expected at least 2 for layout {layout}, got fewer")
-        bodies = [_intergen(body) for body in _at_intergen_start(bodies)]
     result: Positions = (bodies[0] if len(bodies) == 1 else np.stack(bodies)).astype(np.float32)
     return result
-
-
-def read_smpl(motion: Path, body_model: Path, frame_rate_hz: Optional[float] = None) -> Motion:
-    """Poses the joints of a body model (SMPL, SMPL+H, SMPL-X) by a motion of AMASS, SMPL or Inter-X.
-
-    Args:
-        motion: .npz with ``poses`` [frames, 66 or more], or ``root_orient`` (``global_orient``) and ``pose_body``
-            (``body_pose``), in radians (axis times angle); and perhaps ``trans`` or ``transl``, ``betas``, and
-            ``mocap_framerate``, ``mocap_frame_rate`` or ``fps``.
-        body_model: .npz with ``v_template``, ``shapedirs``, ``kintree_table`` and a dense ``J_regressor``.
-        frame_rate_hz: frames per second; overrides the file's, and is required if it states none.
-
-    Raises:
-        ValueError: an array is missing or has another shape.
-        OSError: a file cannot be read.
-    """
-    with np.load(motion, allow_pickle=False) as file:
-        poses = _first(file, "poses")
-        if poses is None:
-            root, body = _first(file, "root_orient", "global_orient"), _first(file, "pose_body", "body_pose")
-            if root is None or body is None:
-                raise ValueError(f"{motion}: expected poses, or root_orient and pose_body, got "
-                                 f"{', '.join(file.files)}")
-            poses = np.concatenate([root.reshape(len(root), -1), body.reshape(len(root), -1)], axis=1)
-        poses = poses.reshape(len(poses), -1)
-        trans = _first(file, "trans", "transl")
-        betas = np.atleast_2d(np.zeros(1) if _first(file, "betas") is None else file["betas"])[0]
-        rate = frame_rate_hz or _first(file, "mocap_framerate", "mocap_frame_rate", "fps")
-    trans = np.zeros((len(poses), 3)) if trans is None else trans
-    if poses.shape[1] < 66 or not len(poses) or trans.shape != (len(poses), 3):
-        raise ValueError(f"{motion}: expected at least 66 numbers of pose and 3 of place for each frame, got "
-                         f"{poses.shape} and {trans.shape}")
-    if rate is None:
-        raise ValueError(f"frame_rate_hz: expected a rate for {motion}, which states none, got None")
-    rest = _rest_joints(body_model, betas)
-    local = _axis_angles(poses[:, :66].reshape(-1, 22, 3).astype(np.float64))
-    world, at = local.copy(), np.zeros((len(poses), 22, 3))
-    at[:, 0] = rest[0] + trans
-    for joint, parent in list(enumerate(PARENTS))[1:]:
-        world[:, joint] = world[:, parent] @ local[:, joint]
-        at[:, joint] = at[:, parent] + world[:, parent] @ (rest[joint] - rest[parent])
-    upwards = (at[:, _PELVIS] - at[:, [7, 8]].mean(axis=1)).mean(axis=0)
-    return Motion(at, JOINTS, float(rate), up_axis="z-up" if np.argmax(np.abs(upwards)) == 2 else "y-up")
 
 
 def to_body(person: Motion) -> Motion:
@@ -240,81 +182,6 @@ def _from_humanml3d(features: Array) -> Array:
     return np.concatenate([root + features[:, None, 3:4] * [0, 1, 0], joints], axis=1)
 
 
-def _at_intergen_start(people: Sequence[Array]) -> List[Array]:
-    """Everybody's lowest joint on the floor; the first person at x = z = 0, facing z across the hips."""
-    first = people[0][0]
-    return [_placed(person, first[_PELVIS], first[_RIGHT_HIP] - first[_LEFT_HIP]) for person in people]
-
-
-def _intergen(at: Array) -> Array:
-    """InterGen's 262 numbers for each frame t but the last, of a placed person:
-
-    0-65 positions; 66-131 ways to t + 1; 132-257 rotations of joints 1 to 21 relative to their parents, each as
-    the rows of the first two columns of its matrix; 258-261 whether ankles and balls of the feet stay on the floor.
-
-    Source: Liang et al. 2024, "InterGen: diffusion-based multi-human motion generation under complex
-    interactions", and process_motion_np of github.com/tr3e/InterGen, written anew from its definition. InterGen
-    copies the rotations from the fit of a body model. Positions do not hold them: here they are those of a person
-    whose rest pose is a T pose, with the least rotation from parent to child that the bones allow.
-    """
-    count = len(at) - 1
-    world = np.zeros((len(at), 22, 3, 3))
-    local = np.zeros_like(world)
-    start = _about_y(-_heading(np.cross([0, 1, 0], at[:, _RIGHT_HIP] - at[:, _LEFT_HIP])))
-    for joint, parent in enumerate(PARENTS):
-        above = start if parent < 0 else world[:, parent]
-        world[:, joint] = above
-        children = [child for child in range(22) if PARENTS[child] == joint]
-        if children:
-            bones = _unit(at[:, children] - at[:, joint:joint + 1], _T_REST[children])
-            world[:, joint] = _nearest_rotation(
-                np.einsum("tci,cj->tij", bones, _T_REST[children]) + _PRIOR_WEIGHT * above)
-        local[:, joint] = np.swapaxes(above, 1, 2) @ world[:, joint]
-    stays = (_squared_ways(at) < 0.001) & (at[:-1, _FEET, 1] < [0.12, 0.05, 0.12, 0.05])
-    return np.concatenate([at[:-1].reshape(count, -1), (at[1:] - at[:-1]).reshape(count, -1),
-                           local[:-1, 1:, :, :2].reshape(count, -1), stays], axis=1)
-
-
-def _rest_joints(body_model: Path, betas: Array) -> Array:
-    """``[22, 3]``: J_regressor (v_template + shapedirs betas), Loper et al. 2015, equations 8 and 10."""
-    with np.load(body_model, allow_pickle=False) as file:
-        lacking = {"v_template", "J_regressor", "kintree_table"} - set(file.files)
-        if lacking:
-            raise ValueError(f"{body_model}: expected {', '.join(sorted(lacking))}, got {', '.join(file.files)}")
-        vertices, regressor, table = file["v_template"], file["J_regressor"], file["kintree_table"]
-        if betas.any():
-            shapes = file["shapedirs"]
-            vertices = vertices + shapes[..., :len(betas)] @ betas[:shapes.shape[-1]]
-    if table.ndim != 2 or tuple(table[0, 1:22]) != PARENTS[1:]:
-        raise ValueError(f"{body_model}: kintree_table: expected the parents of SMPL, SMPL+H or SMPL-X, got others")
-    if regressor.ndim != 2 or len(regressor) < 22 or vertices.shape != (regressor.shape[1], 3):
-        raise ValueError(f"{body_model}: expected J_regressor (22 or more joints, vertices) and v_template "
-                         f"(vertices, 3), got {regressor.shape} and {vertices.shape}")
-    rest: Array = regressor[:22] @ vertices
-    return rest
-
-
-def _first(file: Mapping[str, Array], *names: str) -> Optional[Array]:
-    return next((file[name] for name in names if name in file), None)
-
-
-def _placed(body: Array, origin: Array, across: Array) -> Array:
-    """On the floor, with `origin` at x = z = 0, and turned so that `across` is the line of one who faces z."""
-    moved = body - origin * [1, 0, 1] - [0, body[..., 1].min(), 0]
-    placed: Array = moved @ _about_y(_heading(np.cross([0, 1, 0], across))).T
-    return placed
-
-
-def _squared_ways(at: Array) -> Array:
-    ways: Array = ((at[1:, _FEET] - at[:-1, _FEET]) ** 2).sum(axis=-1)
-    return ways
-
-
-def _heading(ahead: Array) -> Array:
-    """The angle about y that takes a horizontal direction to z."""
-    return np.asarray(-np.arctan2(ahead[..., 0], ahead[..., 2]))
-
-
 def _about_y(angle: Array) -> Array:
     """``[..., 3, 3]``"""
     c, s, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
@@ -330,29 +197,6 @@ def _rotated(turns: Array, points: Array) -> Array:
 def _unit(v: Array, otherwise: npt.ArrayLike) -> Array:
     length = np.linalg.norm(v, axis=-1, keepdims=True)
     return np.asarray(np.where(length > 1e-9, v / np.maximum(length, 1e-9), otherwise))
-
-
-def _nearest_rotation(matrices: Array) -> Array:
-    """The rotations R that maximise trace(R^T matrix) (Kabsch)."""
-    u, _, vt = np.linalg.svd(matrices)
-    u[..., -1] *= np.linalg.det(u @ vt)[..., None]
-    rotations: Array = u @ vt
-    return rotations
-
-
-def _axis_angles(v: Array) -> Array:
-    """``[..., 3, 3]`` from axis times angle."""
-    angle = np.linalg.norm(v, axis=-1)[..., None, None]
-    k = _skew(v) / np.maximum(angle, 1e-12)
-    rotations: Array = np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
-    return rotations
-
-
-def _skew(v: Array) -> Array:
-    x, y, z = np.moveaxis(v, -1, 0)
-    zero = np.zeros_like(x)
-    rows: Array = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1)
-    return rows.reshape(x.shape + (3, 3))
 
 
 def _along(path: Sequence[Array], share: float) -> Array:

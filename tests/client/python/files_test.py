@@ -45,7 +45,7 @@ class FilesTest(unittest.TestCase):
 
     def test_invalid_arguments_name_their_field(self):
         for arguments, message in (
-                ({"side": "up"}, 'side: expected both, left or right, got "up"'),
+                ({"side": "up"}, 'side: expected left or right, got "up"'),
                 ({"unit": "feet"}, 'unit: expected metres, .*, got "feet"'),
                 ({"up_axis": "up"}, 'up_axis: expected y-up, .*, got "up"'),
                 ({"frame_rate_hz": 0}, 'frame_rate_hz: expected a number above 0, got "0"'),

@@ -69,7 +69,7 @@ class SetToolsTest(unittest.TestCase):
         done = of_state["done"]
         files = {
             "index.jsonl": "".join(json.dumps(record, separators=(",", ":")) + "\n" for record in done),
-            "dataset.json": sets.records.to_json({
+            "dataset.json": sets.shards.to_json({
                 "format": "duet-batch", "format_version": 1, "recipe_sha256": "ab",
                 "items": {**counts, "missing": missing}, "frames": 3 * len(done),
                 **({"frame_rate_hz": 30.0} if done else {}),

@@ -10,8 +10,8 @@ import tarfile
 import zipfile
 from typing import Any, Dict, List, Tuple, Union
 
-from duet_motion.sets.records import Record, contents, read_json, sha256_of, to_json, write
-from duet_motion.sets.shards import DataSetError, Records, Shards
+from duet_motion.sets.shards import (DataSetError, Record, Records, Shards, contents,
+                                     read_json, sha256_of, to_json, write)
 from duet_motion.sets.splits import Path, Splits, read_splits, split_of
 
 SHARD_BYTES = 256 << 20

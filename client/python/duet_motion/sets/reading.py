@@ -42,8 +42,7 @@ class SetItem:
     interaction_classes: Tuple[str, ...]
     """The class of each column of ``weights``."""
     weights: Weights
-    """``[frames, classes]``: the label vector of each frame; constant unless the item has
-    keyframes."""
+    """``[frames, classes]``: the label vector, the same in each frame."""
 
     @property
     def name(self) -> str:
@@ -86,7 +85,7 @@ class MotionSet(Sequence[SetItem]):
         self.split = split
         """The split whose items these are; None: all items."""
         splits = read_splits(self.path)
-        self.records: Sequence[Mapping[str, Any]] = Records(
+        self.records = Records(
             index, None if split is None else lambda record: split_of(record, splits) == split)
         """The record of each item, in order."""
         self.description: Mapping[str, Any] = _read_description(self.path)
@@ -160,16 +159,17 @@ class MotionSet(Sequence[SetItem]):
     def _item(self, record: Mapping[str, Any]) -> SetItem:
         pair = self._read(record)
         rate = float(record["frame_rate_hz"])
-        weights = self._weights(record, pair.shape[1])
         if self.frame_rate_hz is not None and rate != self.frame_rate_hz and pair.shape[1] > 1:
             pair = np.stack([resample(person, rate, self.frame_rate_hz) for person in pair])
-            weights = resample(weights, rate, self.frame_rate_hz)
             rate = self.frame_rate_hz
         try:
             names = self.skeleton_of(record)["joint_names"]
             leader, follower = (Motion(person, names, rate) for person in pair)
         except (LookupError, ValueError) as error:
             raise DataSetError(f"{self.path}: {record['name']}: {error}") from error
+        labels = record.get("labels", {})
+        weights = np.tile(np.array([labels.get(name, 0.0) for name in self.interaction_classes],
+                                   dtype=np.float32), (pair.shape[1], 1))
         return SetItem(record, pair, leader, follower, self.interaction_classes, weights)
 
     def _read(self, record: Mapping[str, Any]) -> Positions:
@@ -200,14 +200,6 @@ class MotionSet(Sequence[SetItem]):
             raise ValueError(f"expected .npy, got {', '.join(files)}; add FORMAT_NPY to the recipe's "
                              "output formats")
         return parse_array(files[".npy"].read_bytes())
-
-    def _weights(self, record: Mapping[str, Any], frames: int) -> Weights:
-        """Linear between keyframes, constant before the first and after the last."""
-        keyframes = _keyframes(record)
-        at = [frame for frame, _ in keyframes]
-        columns = [np.interp(np.arange(frames), at, [labels.get(name, 0.0) for _, labels in keyframes])
-                   for name in self.interaction_classes]
-        return np.stack(columns, axis=1).astype(np.float32)
 
 
 def read_set(path: Path, *, frame_rate_hz: Optional[float] = None,
@@ -254,12 +246,6 @@ def pad(items: Sequence[SetItem], frames: Optional[int] = None) -> PaddedBatch:
         np.stack([item.weights[frames_of] for item, frames_of in zip(items, at)]),
         np.stack([np.arange(longest) < item.pair.shape[1] for item in items]),
         tuple(item.record for item in items))
-
-
-def _keyframes(record: Mapping[str, Any]) -> List[Tuple[int, Mapping[str, float]]]:
-    if "keyframes" in record:
-        return [(key["frame"], key["labels"]) for key in record["keyframes"]]
-    return [(0, record.get("labels", {}))]
 
 
 def _read_description(path: pathlib.Path) -> Mapping[str, Any]:

@@ -1,4 +1,4 @@
-"""Reads the arrays of a data set from single files, zip shards or tar shards.
+"""The files of a data set: single ones, zip shards and tar shards.
 
 The offsets in a shard are read once. Each array is then read through a newly opened file, so that
 threads and forked processes share no file position.
@@ -6,14 +6,15 @@ threads and forked processes share no file position.
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
+import os
 import pathlib
 import struct
 import tarfile
 import zipfile
-from typing import (Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple,
-                    overload)
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,12 +23,15 @@ import numpy.typing as npt
 _ZIP_HEADER = struct.Struct("<26xHH")
 
 
+Record = Mapping[str, Any]
+
+
 class DataSetError(ValueError):
     """A data set cannot be read. The message names the file, what was expected and what was
     found."""
 
 
-class Records(Sequence[Mapping[str, Any]]):
+class Records:
     """The lines of ``index.jsonl``, parsed on access because a set can have millions."""
 
     def __init__(self, path: pathlib.Path,
@@ -47,18 +51,11 @@ class Records(Sequence[Mapping[str, Any]]):
     def __len__(self) -> int:
         return len(self._begins)
 
-    @overload
-    def __getitem__(self, index: int) -> Mapping[str, Any]: ...
-    @overload
-    def __getitem__(self, index: slice) -> List[Mapping[str, Any]]: ...
-
-    def __getitem__(self, index: Any) -> Any:
-        if isinstance(index, slice):
-            return [self[at] for at in range(*index.indices(len(self)))]
+    def __getitem__(self, index: int) -> Record:
         begin = int(self._begins[index])
         with self._path.open("rb") as file:
             file.seek(begin)
-            record: Mapping[str, Any] = self._parse(file.readline(), begin)
+            record: Record = self._parse(file.readline(), begin)
         return record
 
     def __iter__(self) -> Iterator[Mapping[str, Any]]:
@@ -134,3 +131,65 @@ def _zip_members(path: pathlib.Path) -> Dict[str, Tuple[int, int]]:
             begin = member.header_offset + _ZIP_HEADER.size + name + extra
             members[member.filename] = (begin, member.file_size)
     return members
+
+
+def sha256_of(file: pathlib.Path) -> str:
+    """The digest of a file of any size."""
+    digest = hashlib.sha256()
+    with file.open("rb") as opened:
+        while block := opened.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def read_json(file: pathlib.Path) -> Dict[str, Any]:
+    """An object. Raises DataSetError."""
+    try:
+        value = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise DataSetError(f"{file}: expected a JSON object, got {error}") from error
+    if not isinstance(value, dict):
+        raise DataSetError(f"{file}: expected a JSON object, got {type(value).__name__}")
+    return value
+
+
+def to_json(value: Mapping[str, Any]) -> str:
+    """In the form of `duet batch`."""
+    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
+def write(file: pathlib.Path, text: str) -> None:
+    """Replaces a file at once: it has the old content or the new one, whenever the process ends."""
+    partial = file.with_name(file.name + ".partial")
+    with partial.open("w", encoding="utf-8", newline="") as out:
+        out.write(text)
+        out.flush()
+        os.fsync(out.fileno())
+    partial.replace(file)
+
+
+def checked(data: bytes, file: Record, place: str) -> bytes:
+    """``data``, if it has the digest of a file of a record. Raises DataSetError."""
+    if hashlib.sha256(data).hexdigest() != file["sha256"]:
+        raise DataSetError(f"{place}: was changed")
+    return data
+
+
+def contents(folder: pathlib.Path, record: Record, shards: Shards) -> Iterator[Tuple[str, bytes]]:
+    """The path and the content of each file of an item, from its folder or its shard.
+
+    Raises:
+        DataSetError: a file is missing or was changed.
+    """
+    for file in record["files"]:
+        path = file["path"]
+        place = folder / record.get("shard", "") / path
+        try:
+            if "shard" in record:
+                data = shards.data(record["shard"], path)
+            else:
+                data = place.read_bytes()
+        except (OSError, KeyError, ValueError) as error:
+            missing = isinstance(error, (FileNotFoundError, KeyError))
+            raise DataSetError(f"{place}: {'no such file' if missing else error}") from error
+        yield path, checked(data, file, str(place))

@@ -6,8 +6,7 @@ import dataclasses
 import pathlib
 from typing import Any, Dict, List, Optional
 
-from duet_motion.sets.records import contents, read_json, sha256_of
-from duet_motion.sets.shards import DataSetError, Records, Shards
+from duet_motion.sets.shards import (DataSetError, Records, Shards, contents, read_json, sha256_of)
 from duet_motion.sets.splits import Path
 
 
