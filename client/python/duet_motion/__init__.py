@@ -16,8 +16,7 @@ from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldV
                                 UnavailableError)
 from duet_motion.files import (MotionFileError, estimate_vertical, read_motion, read_pair, write_motion,
                                write_page)
-from duet_motion.live import (LiveHeader, LiveNotice, LivePart, LiveRequest,
-                              LiveSummary)
+from duet_motion.live import LiveHeader, LiveNotice, LivePart, LiveRequest, LiveSummary
 from duet_motion.motion import Motion
 from duet_motion.options import TlsOptions
 from duet_motion.request import Constraint, SynthesisRequest
@@ -30,14 +29,13 @@ from duet_motion.sets import DataSetError, MotionSet, PaddedBatch, SetItem, pad,
 __version__ = "1.0.0"
 
 __all__ = [
-    "CancelledError", "Client", "Constraint", "DataSetError", "DeadlineError", "DuetError", "FieldViolation",
-    "FollowerChunk", "FrameRun", "InvalidRequestError", "JointRotations", "LiveHeader", "LiveNotice",
-    "LivePart", "LiveRequest", "LiveSummary", "MalformedReplyError",
+    "CancelledError", "Client", "Constraint", "DataSetError", "DeadlineError", "DuetError",
+    "FieldViolation", "FollowerChunk", "FrameRun", "InvalidRequestError", "JointRotations",
+    "LiveHeader", "LiveNotice", "LivePart", "LiveRequest", "LiveSummary", "MalformedReplyError",
     "ModelDetails", "ModelInfo", "ModelNotFoundError", "Motion", "MotionFileError", "MotionGrade",
-    "MotionSet", "NotPermittedError", "PaddedBatch", "RequestLimits",
-    "RequestMismatchError", "RetryOptions", "RigJoint", "ServerBusyError", "SetItem",
-    "SynthesisRequest", "SynthesisResult",
+    "MotionSet", "NotPermittedError", "PaddedBatch", "RequestLimits", "RequestMismatchError",
+    "RetryOptions", "RigJoint", "ServerBusyError", "SetItem", "SynthesisRequest", "SynthesisResult",
     "SynthesisStream", "Timings", "TlsOptions", "UnavailableError", "VerticalEstimate",
-    "__version__", "aio", "estimate_vertical", "pad", "research",
-    "read_motion", "read_pair", "read_set", "write_motion", "write_page",
+    "__version__", "aio", "estimate_vertical", "pad", "research", "read_motion", "read_pair",
+    "read_set", "write_motion", "write_page",
 ]

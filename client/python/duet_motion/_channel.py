@@ -61,7 +61,8 @@ class Connected:
         self._settings = check_settings(
             address, _first(timeout, _settings.seconds("TIMEOUT"), DEFAULT_TIMEOUT),
             _first(wait, _settings.seconds("WAIT"), DEFAULT_WAIT), retry, options, token)
-        check_concurrency("max_concurrent_calls", max_concurrent_calls)
+        if max_concurrent_calls < 1:
+            raise ValueError(f"max_concurrent_calls: expected 1 or more, got {max_concurrent_calls}")
         self._max_concurrent_calls = max_concurrent_calls
         self._turns = self._semaphore(max_concurrent_calls)
         arguments = channel_arguments(retry, options, token, authority)
@@ -86,11 +87,6 @@ def tls_options(tls: Union[TlsOptions, bool]) -> Optional[TlsOptions]:
     if isinstance(tls, bool):
         return TlsOptions() if tls else None
     return tls
-
-
-def check_concurrency(name: str, value: int) -> None:
-    if value < 1:
-        raise ValueError(f"{name}: expected 1 or more, got {value}")
 
 
 def check_open(closed: threading.Event) -> None:
@@ -134,9 +130,8 @@ def _milliseconds(seconds: float) -> int:
 
 
 def credentials(tls: TlsOptions) -> grpc.ChannelCredentials:
-    return grpc.ssl_channel_credentials(root_certificates=tls.root_certificates or None,
-                                        private_key=tls.private_key or None,
-                                        certificate_chain=tls.certificate_chain or None)
+    return grpc.ssl_channel_credentials(tls.root_certificates or None, tls.private_key or None,
+                                        tls.certificate_chain or None)
 
 
 def check_settings(address: str, timeout: float, wait: float, retry: RetryOptions,

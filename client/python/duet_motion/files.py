@@ -20,8 +20,6 @@ from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 from duet_motion.motion import Motion, axes_from_y_up
 from duet_motion.result import SynthesisResult, VerticalEstimate
 
-__all__ = ["MotionFileError", "estimate_vertical", "read_motion", "read_pair", "write_motion", "write_page"]
-
 Path = Union[str, "os.PathLike[str]"]
 Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
 

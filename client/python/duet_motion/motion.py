@@ -20,7 +20,6 @@ UP_AXES = {"y-up": motion_pb2.UP_AXIS_Y_UP, "z-up": motion_pb2.UP_AXIS_Z_UP,
            "y-down": motion_pb2.UP_AXIS_Y_DOWN}
 
 Positions = npt.NDArray[np.float32]
-_AXES = "xyz"
 
 # Metres in one unit of length.
 _METRES = {"metres": 1.0, "millimetres": 0.001}
@@ -178,11 +177,6 @@ def axes_from_y_up(vector: Sequence[float], up_axis: str) -> Tuple[float, float,
     return x, y, z
 
 
-def place(frame: int, joint: str, axis: int) -> str:
-    """Describes the place of a value in a motion."""
-    return f"frame {frame}, joint {joint!r}, {_AXES[axis]}"
-
-
 def checked_array(field: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
     """Converts ``values`` to an array of real numbers; masked values become NaN."""
     if isinstance(values, np.ma.MaskedArray):
@@ -263,7 +257,7 @@ def _checked_positions(given: npt.ArrayLike, names: Tuple[str, ...]) -> npt.NDAr
     if found is not None:
         frame, joint, axis = found
         raise ValueError(f"positions[{frame}, {joint}, {axis}]: expected a finite float32, got "
-                         f"{array[found]} at {place(frame, names[joint], axis)}")
+                         f"{array[found]} at frame {frame}, joint {names[joint]!r}, {'xyz'[axis]}")
     return array
 
 

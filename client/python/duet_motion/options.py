@@ -9,8 +9,6 @@ import ssl
 from typing import Union
 
 Path = Union[str, pathlib.Path]
-
-
 _PRIVATE_KEY = re.compile(rb"-----BEGIN [A-Z ]*PRIVATE KEY-----")
 
 

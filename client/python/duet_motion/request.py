@@ -224,8 +224,12 @@ def to_selector(model: str) -> model_pb2.ModelSelector:
 
 def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
     """Converts a request to its wire format."""
+    leader = request.leader
     out = synthesis_pb2.SynthesizeRequest(
-        model=to_selector(request.model), leader=_leader(request.leader),
+        model=to_selector(request.model), leader=motion_pb2.Motion(
+            joint_names=leader.joint_names, frame_rate_hz=leader.frame_rate_hz,
+            unit=UNITS[leader.unit], up_axis=UP_AXES[leader.up_axis], frame_count=leader.frame_count,
+            positions=floats(leader.positions)),
         seed=None if request.seed is None else int(request.seed), variety=float(request.variety),
         reaction=float(request.reaction),
         candidates=int(request.candidates),
@@ -250,13 +254,6 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
             joint_name=constraint.joint, frame=int(constraint.frame),
             position=motion_pb2.Point(x=x, y=y, z=z), softness=float(constraint.softness))
     return out
-
-
-def _leader(leader: Motion) -> motion_pb2.Motion:
-    return motion_pb2.Motion(
-        joint_names=leader.joint_names, frame_rate_hz=leader.frame_rate_hz,
-        unit=UNITS[leader.unit], up_axis=UP_AXES[leader.up_axis], frame_count=leader.frame_count,
-        positions=floats(leader.positions))
 
 
 def fill(labels: Labels, vector: reaction_pb2.LabelVector) -> None:
@@ -309,12 +306,11 @@ def check_answering(request: Union[SynthesisRequest, LiveRequest]) -> None:
         raise ValueError(f"clean_up: expected True, False or None, got {short(request.clean_up)}")
 
 
-def check_kind(request: object, kind: type, name: str = "request") -> None:
+def check_kind(request: object, kind: type) -> None:
     """Raises TypeError unless the request is of its class."""
-    if isinstance(request, kind):
-        return
-    raise TypeError(f"{name}: expected a duet_motion.{kind.__name__}, got "
-                    f"{type(request).__name__} {short(request)}")
+    if not isinstance(request, kind):
+        raise TypeError(f"request: expected a duet_motion.{kind.__name__}, got "
+                        f"{type(request).__name__} {short(request)}")
 
 
 def check_request_id(request_id: str) -> None:
