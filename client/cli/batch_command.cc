@@ -140,53 +140,39 @@ absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
   return CheckPlan({arguments.shard, arguments.limit}, &*plan, visit, stopped);
 }
 
-// Reads the leader of each item, and reports once each that cannot be used.
-class LeaderReader {
- public:
-  LeaderReader(const batch::SetSource& prepared, std::ostream& err)
-      : prepared_(prepared), leaders_(prepared.skeletons.size()), err_(err) {}
-
-  absl::Status Read(const batch::Item& item) {
-    const std::shared_ptr<batch::SharedLeader> shared =
-        leaders_.Get(item.leader, item.side, item.model);
-    const absl::StatusOr<batch::LoadedLeader>& leader =
-        shared->Get(prepared_.recipe.input, prepared_.skeletons[static_cast<size_t>(item.model)]);
-    if (leader.ok()) {
-      frames += leader->clip.frame_count();
-    } else if (bad_.insert(std::string(leader.status().message())).second) {
-      err_ << "cannot be used: " << leader.status().message() << "\n";
-    }
-    return absl::OkStatus();
-  }
-  int64_t bad_count() const { return static_cast<int64_t>(bad_.size()); }
-
-  int64_t frames = 0;
-
- private:
-  const batch::SetSource& prepared_;
-  batch::LastLeaders leaders_;
-  std::ostream& err_;
-  std::set<std::string> bad_;  // messages
-};
-
 absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                                 const ProgramEnvironment& environment, batch::SetSource prepared) {
   const batch::v1::Job begun =
       batch::ReadJob(ShardFolder(arguments.out, arguments.shard)).value_or(batch::v1::Job());
   const absl::Status status = AskModels(arguments, environment, begun, &prepared);
   if (!status.ok()) return status;
-  LeaderReader reader(prepared, *environment.err);
-  const absl::StatusOr<batch::PlanCheck> check = Check(
-      arguments, prepared, [&reader](const batch::Item& item) { return reader.Read(item); },
-      [] { return false; });
+  batch::LastLeaders leaders(prepared.skeletons.size());
+  int64_t frames = 0;
+  std::set<std::string> bad;  // messages
+  // Reads the leader of each item, and reports once each that cannot be used.
+  const auto read = [&](const batch::Item& item) {
+    const std::shared_ptr<batch::SharedLeader> shared =
+        leaders.Get(item.leader, item.side, item.model);
+    const absl::StatusOr<batch::LoadedLeader>& leader =
+        shared->Get(prepared.recipe.input, prepared.skeletons[static_cast<size_t>(item.model)]);
+    if (leader.ok()) {
+      frames += leader->clip.frame_count();
+    } else if (bad.insert(std::string(leader.status().message())).second) {
+      *environment.err << "cannot be used: " << leader.status().message() << "\n";
+    }
+    return absl::OkStatus();
+  };
+  const absl::StatusOr<batch::PlanCheck> check =
+      Check(arguments, prepared, read, [] { return false; });
   if (!check.ok()) return check.status();
   *environment.out << base::Counted(check->items, "item") << " of "
                    << base::Counted(check->leaders, "leader") << ", "
-                   << base::Counted(reader.frames, "frame") << "\n";
+                   << base::Counted(frames, "frame") << "\n";
   const absl::Status lines = BadLinesError(*check);
   if (!lines.ok()) return lines;
-  return arguments.allow_failed.Allows(reader.bad_count(), check->files) ? kExitDone
-                                                                         : kExitBadInput;
+  const bool allowed =
+      arguments.allow_failed.Allows(static_cast<int64_t>(bad.size()), check->files);
+  return allowed ? kExitDone : kExitBadInput;
 }
 
 int64_t ItemsOfRun(const batch::Progress& progress) {
@@ -270,14 +256,6 @@ class ProgressDisplay {
   bool end_ = false;
   std::thread shower_;
 };
-
-batch::JobOptions ToJobOptions(const BatchArguments& arguments) {
-  batch::JobOptions options;
-  options.calls.max_in_flight = arguments.max_in_flight;
-  options.patience = absl::ToChronoNanoseconds(absl::Seconds(arguments.patience_seconds));
-  options.limit = arguments.limit;
-  return options;
-}
 
 void Report(const BatchArguments& arguments, const std::filesystem::path& folder,
             const batch::JobReport& report, bool failures_allowed,
@@ -374,9 +352,13 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
     status = folder.Begin(IdentityOf(prepared.recipe, arguments.shard, prepared.models));
   }
   if (!status.ok()) return status;
+  batch::JobOptions job_options;
+  job_options.calls.max_in_flight = arguments.max_in_flight;
+  job_options.patience = absl::ToChronoNanoseconds(absl::Seconds(arguments.patience_seconds));
+  job_options.limit = arguments.limit;
   batch::Job job({std::move(prepared), arguments.shard, *std::move(client), &folder, survey->get(),
                   check->items},
-                 *std::move(plan), ToJobOptions(arguments));
+                 *std::move(plan), job_options);
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
       RunJob(arguments, job, folder.out(), *check, environment, running);

@@ -131,11 +131,6 @@ std::string DescribeUnlikeLength(const motion::Clip& first, const motion::Clip& 
                       "unlike the other: each can be read alone, not both", "\n");
 }
 
-std::string DescribePeople(int people) {
-  return absl::StrCat(base::Counted(people, "person", "people"),
-                      people > 2 ? " (the first two are read)" : "");
-}
-
 json SettingJson(const std::optional<Setting>& setting) {
   if (!setting.has_value()) return nullptr;
   json object = {{"value", setting->value}, {"origin", std::string(OriginName(setting->origin))}};
@@ -199,7 +194,10 @@ std::string DescribeInspection(const Inspection& inspection) {
   std::string text = base::EscapeControls(inspection.file);
   const retargeting::ReadingReport& first = inspection.people[0].report;
   if (!first.format.empty()) absl::StrAppend(&text, ": ", first.format);
-  if (first.people > 0) absl::StrAppend(&text, ", ", DescribePeople(first.people));
+  if (first.people > 0) {
+    absl::StrAppend(&text, ", ", base::Counted(first.people, "person", "people"),
+                    first.people > 2 ? " (the first two are read)" : "");
+  }
   const motion::Clip& clip = inspection.people[0].clip;
   if (clip.frame_count() > 0) absl::StrAppend(&text, ", ", DescribeLength(clip));
   text += "\n";

@@ -65,10 +65,58 @@ class LiveFileSink final : public live::FollowerSink {
         request_(std::move(request)),
         skeleton_(std::move(skeleton)) {}
 
-  absl::Status Start(const live::LeaderFormat& format) override;
-  absl::Status Accept(const LiveFrames& frames) override;
-  void AcceptLeader(const live::LeaderFrame& frame) override;
-  absl::StatusOr<std::vector<std::string>> Finish(const LiveInfo& info) override;
+  absl::Status Start(const live::LeaderFormat& format) override {
+    leader_.joint_names = format.joint_names;
+    leader_.frame_rate_hz = format.frame_rate_hz;
+    leader_.poses = motion::Poses(0, leader_.joint_count());
+    follower_ = leader_;
+    return CheckCanCreate(path_);
+  }
+
+  absl::Status Accept(const LiveFrames& frames) override {
+    follower_.Append(frames.poses.all());
+    return absl::OkStatus();
+  }
+
+  void AcceptLeader(const live::LeaderFrame& frame) override {
+    const int end = leader_.frame_count();
+    if (frame.index < end) return;
+    // Lost frames, which the server interpolates too.
+    for (int lost = end; lost < frame.index && end > 0; ++lost) {
+      const float share =
+          static_cast<float>(lost - end + 1) / static_cast<float>(frame.index - end + 1);
+      std::vector<motion::Vec3> pose(frame.positions.size());
+      for (std::size_t joint = 0; joint < pose.size(); ++joint) {
+        pose[joint] = Lerp(leader_.poses[end - 1][joint], frame.positions[joint], share);
+      }
+      leader_.Append(pose);
+    }
+    leader_.Append(frame.positions);
+  }
+
+  absl::StatusOr<std::vector<std::string>> Finish(const LiveInfo& info) override {
+    const int frames = std::min(leader_.frame_count(), follower_.frame_count());
+    if (frames == 0) {
+      return std::vector<std::string>{absl::StrCat(path_.string(), ": not written, no frames")};
+    }
+    leader_.poses.Resize(frames);
+    follower_.poses.Resize(frames);
+    Synthesis synthesis;
+    synthesis.request = request_;
+    synthesis.result.pair = {std::move(leader_), std::move(follower_)};
+    synthesis.result.model_name = info.model_name;
+    synthesis.result.model_version = info.model_version;
+    synthesis.result.seed = info.seed;
+    synthesis.result.variety = info.variety;
+    synthesis.result.candidates = info.candidates;
+    synthesis.result.cleaned_up = info.cleaned_up;
+    synthesis.skeleton = skeleton_;
+    synthesis.leader_file = leader_file_;
+    synthesis.sampled = true;
+    const absl::Status written = WriteFollower(path_, synthesis);
+    if (!written.ok()) return NotWritten(written);
+    return std::vector<std::string>{path_.string()};
+  }
 
  private:
   const std::filesystem::path path_;
@@ -77,59 +125,6 @@ class LiveFileSink final : public live::FollowerSink {
   const motion::Skeleton skeleton_;
   motion::Clip leader_, follower_;
 };
-
-absl::Status LiveFileSink::Start(const live::LeaderFormat& format) {
-  leader_.joint_names = format.joint_names;
-  leader_.frame_rate_hz = format.frame_rate_hz;
-  leader_.poses = motion::Poses(0, leader_.joint_count());
-  follower_ = leader_;
-  return CheckCanCreate(path_);
-}
-
-absl::Status LiveFileSink::Accept(const LiveFrames& frames) {
-  follower_.Append(frames.poses.all());
-  return absl::OkStatus();
-}
-
-void LiveFileSink::AcceptLeader(const live::LeaderFrame& frame) {
-  const int end = leader_.frame_count();
-  if (frame.index < end) return;
-  // Lost frames, which the server interpolates too.
-  for (int lost = end; lost < frame.index && end > 0; ++lost) {
-    const float share =
-        static_cast<float>(lost - end + 1) / static_cast<float>(frame.index - end + 1);
-    std::vector<motion::Vec3> pose(frame.positions.size());
-    for (std::size_t joint = 0; joint < pose.size(); ++joint) {
-      pose[joint] = Lerp(leader_.poses[end - 1][joint], frame.positions[joint], share);
-    }
-    leader_.Append(pose);
-  }
-  leader_.Append(frame.positions);
-}
-
-absl::StatusOr<std::vector<std::string>> LiveFileSink::Finish(const LiveInfo& info) {
-  const int frames = std::min(leader_.frame_count(), follower_.frame_count());
-  if (frames == 0) {
-    return std::vector<std::string>{absl::StrCat(path_.string(), ": not written, no frames")};
-  }
-  leader_.poses.Resize(frames);
-  follower_.poses.Resize(frames);
-  Synthesis synthesis;
-  synthesis.request = request_;
-  synthesis.result.pair = {std::move(leader_), std::move(follower_)};
-  synthesis.result.model_name = info.model_name;
-  synthesis.result.model_version = info.model_version;
-  synthesis.result.seed = info.seed;
-  synthesis.result.variety = info.variety;
-  synthesis.result.candidates = info.candidates;
-  synthesis.result.cleaned_up = info.cleaned_up;
-  synthesis.skeleton = skeleton_;
-  synthesis.leader_file = leader_file_;
-  synthesis.sampled = true;
-  const absl::Status written = WriteFollower(path_, synthesis);
-  if (!written.ok()) return NotWritten(written);
-  return std::vector<std::string>{path_.string()};
-}
 
 // Prints what happened to the connection.
 void ShowNotice(const LiveNotice& notice, std::ostream& err) {
@@ -225,11 +220,6 @@ absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments,
   return report;
 }
 
-std::string Describe(const live::Latencies& latency) {
-  return absl::StrFormat("p50 %.1f ms, p99 %.1f ms", absl::ToDoubleMilliseconds(latency.p50),
-                         absl::ToDoubleMilliseconds(latency.p99));
-}
-
 // What went wrong, in words; empty if nothing did.
 std::string DescribeLosses(const live::LiveTotals& totals) {
   std::vector<std::string> parts;
@@ -257,7 +247,9 @@ std::string DescribeLive(const live::LiveReport& report) {
                   base::Counted(report.info.delay_frames, "frame"), "\n");
   absl::StrAppendFormat(&text, "live      %.1f s, %d follower frames at %g Hz\n",
                         absl::ToDoubleSeconds(totals.time), totals.frames, report.frame_rate_hz);
-  absl::StrAppend(&text, "latency   ", Describe(totals.latency), "\n");
+  absl::StrAppendFormat(&text, "latency   p50 %.1f ms, p99 %.1f ms\n",
+                        absl::ToDoubleMilliseconds(totals.latency.p50),
+                        absl::ToDoubleMilliseconds(totals.latency.p99));
   const std::string losses = DescribeLosses(totals);
   if (!losses.empty()) absl::StrAppend(&text, "losses    ", losses, "\n");
   if (totals.resumed > 0) {

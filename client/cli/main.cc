@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/program_environment.h"
+#include "client/cli/command.h"
 #include "model/base/program_output.h"
 
 int main(int argc, char** argv) {

@@ -72,18 +72,14 @@ std::string DescribeModels(const std::vector<ModelInfo>& models) {
   });
 }
 
-std::string ModelsJson(const std::vector<ModelInfo>& models) {
-  json list = json::array();
-  for (const ModelInfo& model : models) list.push_back(ModelJson(model));
-  return Print({{"models", list}});
-}
-
 absl::Status RunModels(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<Client> client = Connect(arguments.server, environment);
   if (!client.ok()) return client.status();
   const absl::StatusOr<std::vector<ModelInfo>> models = client->ListModels();
   if (!models.ok()) return models.status();
-  *environment.out << (arguments.json ? ModelsJson(*models) : DescribeModels(*models));
+  json list = json::array();
+  for (const ModelInfo& model : *models) list.push_back(ModelJson(model));
+  *environment.out << (arguments.json ? Print({{"models", list}}) : DescribeModels(*models));
   return absl::OkStatus();
 }
 

@@ -4,7 +4,6 @@
 
 #include "absl/status/status.h"
 #include "client/cli/command.h"
-#include "client/cli/program_environment.h"
 #include "client/cli/report.h"
 #include "model/base/usage_text.h"
 

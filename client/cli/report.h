@@ -17,13 +17,7 @@ enum ExitCode : int {
   kExitBadInput = 42,  // the same call will never succeed: input, model or credentials
 };
 
-// The exit code for a call or a file that failed with `status`.
-//
-//   0   OK
-//   42  INVALID_ARGUMENT, FAILED_PRECONDITION, OUT_OF_RANGE, NOT_FOUND, ALREADY_EXISTS,
-//       PERMISSION_DENIED, UNAUTHENTICATED, UNIMPLEMENTED; RESOURCE_EXHAUSTED if the server does
-//       not say when to retry (the message is too large)
-//   1   everything else
+// The exit code for a call or a file that failed with `status`; IsPermanent says which code.
 inline ExitCode ExitCodeFor(const absl::Status& status) {
   if (status.ok()) return kExitDone;
   return IsPermanent(status) ? kExitBadInput : kExitRetry;

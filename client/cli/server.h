@@ -6,7 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
-#include "client/cli/program_environment.h"
+#include "client/cli/command.h"
 #include "client/options.h"
 
 namespace duet::client::cli {

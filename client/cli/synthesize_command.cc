@@ -35,13 +35,6 @@ struct SynthesizeArguments : ReactionArguments {
   bool quiet = false;
 };
 
-// "a.bvh --out b.json"
-std::string OutputsText(const Paths& outputs) {
-  return absl::StrJoin(outputs, " --out ", [](std::string* out, const std::filesystem::path& path) {
-    out->append(path.string());
-  });
-}
-
 // Whether an output holds joint rotations.
 bool HoldsRotations(const SynthesizeArguments& arguments) {
   return std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
@@ -65,8 +58,7 @@ void CheckTogether(const SynthesizeArguments& arguments) {
 absl::Status CheckRequest(const SynthesizeArguments& arguments, const SynthesisRequest& request) {
   if (request.rotations && !HoldsRotations(arguments)) {
     return absl::InvalidArgumentError(
-        absl::StrCat("reply_rotations: expected --out FILE.json, which holds them, got --out ",
-                     OutputsText(arguments.outputs)));
+        "reply_rotations: expected --out FILE.json, which holds them, got only other outputs");
   }
   const Paths inputs = {arguments.leader, arguments.follower_start, arguments.request};
   for (const std::filesystem::path& output : arguments.outputs) {

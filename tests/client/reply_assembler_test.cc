@@ -215,9 +215,6 @@ TEST_F(ReplyAssemblerTest, WhatRemainsAtTheConstraintsIsReturned) {
   EXPECT_THAT(feed({}), StatusIs(kInternal, HasSubstr("expected 2 values, one for each of "
                                                       "constraints, got 0; does the server know")));
   EXPECT_THAT(feed({0.1f}), StatusIs(kInternal, HasSubstr("got 1")));
-  EXPECT_THAT(feed({0.1f, -1}), StatusIs(kInternal, HasSubstr("got -1")));
-  EXPECT_THAT(feed({std::numeric_limits<float>::quiet_NaN(), 0}),
-              StatusIs(kInternal, HasSubstr("got nan")));
   ASSERT_THAT(feed({0.1f, 0}), IsOk());
   EXPECT_THAT(std::move(assembler).TakeResult().constraint_metres, ElementsAre(0.1f, 0));
 }
@@ -266,31 +263,6 @@ TEST_F(ReplyAssemblerTest, EveryContractViolationIsReported) {
        [](Reply* r) { r->back().mutable_summary()->set_frame_count(4); }},
       {"summary.chunk_count: expected 3, got 2",
        [](Reply* r) { r->back().mutable_summary()->set_chunk_count(2); }},
-      {"summary.unfamiliarity: expected a finite value of 0 or more, got -1",
-       [](Reply* r) { r->back().mutable_summary()->set_unfamiliarity(-1); }},
-      {"summary.unfamiliarity: expected a finite value of 0 or more, got nan",
-       [](Reply* r) {
-         r->back().mutable_summary()->set_unfamiliarity(std::numeric_limits<double>::quiet_NaN());
-       }},
-      {"summary.unfamiliarity: expected a finite value of 0 or more, got inf",
-       [](Reply* r) {
-         r->back().mutable_summary()->set_unfamiliarity(std::numeric_limits<double>::infinity());
-       }},
-      {"summary.grade: expected shares from 0 to 1, got 1.5",
-       [](Reply* r) { r->back().mutable_summary()->mutable_grade()->set_twisted(1.5F); }},
-      {"summary.grade: expected shares from 0 to 1, got nan",
-       [](Reply* r) {
-         r->back().mutable_summary()->mutable_grade()->set_overlapping(
-             std::numeric_limits<float>::quiet_NaN());
-       }},
-      {"summary.grade.bad_runs: expected runs of the 5 frames, got 0 from 0",
-       [](Reply* r) { r->back().mutable_summary()->mutable_grade()->add_bad_runs(); }},
-      {"summary.grade.bad_runs: expected runs of the 5 frames, got 4294967295 from 4",
-       [](Reply* r) {
-         v1::FrameRun* run = r->back().mutable_summary()->mutable_grade()->add_bad_runs();
-         run->set_first_frame(4);
-         run->set_frame_count(4294967295u);
-       }},
       {"a message after the summary", [](Reply* r) { r->push_back(r->back()); }},
       {"a message without a payload", [](Reply* r) { (*r)[1].clear_payload(); }},
   };

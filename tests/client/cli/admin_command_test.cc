@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/cli/program_environment.h"
+#include "client/cli/command.h"
 #include "client/cli/report.h"
 #include "duet/admin/v1/admin.grpc.pb.h"
 #include "gmock/gmock.h"

@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "client/cli/program_environment.h"
+#include "client/cli/command.h"
 #include "client/cli/report.h"
 #include "client/internal/connect.h"
 #include "gmock/gmock.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/program_environment.h"
+#include "client/cli/command.h"
 #include "client/connection.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"

@@ -251,23 +251,6 @@ TEST_F(ProgramTest, SendsTheFlagsAndTheRequestOfAFile) {
   EXPECT_NEAR(sent.leader.at(5, 2).y, leader_.at(5, 2).y, 1e-5);
 }
 
-TEST_F(ProgramTest, ARequestCanHoldTheLeader) {
-  std::string text =
-      "label_vector { weights { interaction_class: 'hug' weight: 1 } } leader { unit: "
-      "LENGTH_UNIT_METRES up_axis: UP_AXIS_Y_UP frame_rate_hz: 15 frame_count: 20 ";
-  for (const std::string& joint : leader_.joint_names) text += "joint_names: '" + joint + "' ";
-  for (const motion::Vec3& point : leader_.poses.all()) {
-    absl::StrAppend(&text, "positions: [", point.x, ", ", point.y, ", ", point.z, "] ");
-  }
-  WriteTestFile(folder_ / "request", text + "}");
-  ASSERT_EQ(Run({"synthesize", "--request", Path("request"), "--out", Path("pair.csv")}), 0)
-      << err();
-  EXPECT_EQ(sent_.back().leader.frame_count(), kFrames);
-  EXPECT_NEAR(sent_.back().leader.at(3, 1).y, leader_.at(3, 1).y, 1e-4);
-  EXPECT_EQ(sent_.back().up, std::nullopt);
-  EXPECT_THAT(out(), HasSubstr("leader    " + Path("request") + ": 20 frames"));
-}
-
 TEST_F(ProgramTest, FollowerStartsAsTheOtherPersonOfTheLeadersFile) {
   motion::ClipPair pair{leader_, leader_};
   for (motion::Vec3& position : pair.follower.poses.all()) position.x += 3;
