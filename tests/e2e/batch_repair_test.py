@@ -175,17 +175,6 @@ class BatchRepairTest(tools.ServedTest):
         result = self.run_in_folder(*command, code=42)
         self.assertIn("modified: seed: 7 -> 8", result.stderr)
 
-    def test_ids_that_are_invalid_file_names_are_kept(self):
-        out, manifest = self.folder / "long", self.folder / "long.tsv"
-        hug = self.leaders / "hug.bvh"
-        manifest.write_text(f"id\tleader\n{'x' * 300}\t{hug}\n{'a/' * 3000}b\t{hug}\n", encoding="utf-8")
-        self.run_in_folder(tools.PROGRAMS / "duet", "batch", "--manifest", manifest, "--recipe",
-                           "recipe.textproto", "--out", out, "--server", self.server.address)
-        index = entries(out)
-        self.assertEqual(len(index), 24)
-        self.assertTrue(index[0]["full_name"].startswith("x" * 300))
-        self.verified(out)
-
 
 if __name__ == "__main__":
     tools.main()

@@ -1,8 +1,8 @@
-"""Other people's readers of the .glb that Duet writes: Khronos' validator, three.js, Blender.
+"""Other people's readers of the .glb that Duet writes: Khronos' validator, Blender.
 
-The validator and three.js come from npm, into any folder outside the repository:
+The validator comes from npm, into any folder outside the repository:
 
-    npm install --prefix FOLDER gltf-validator three
+    npm install --prefix FOLDER gltf-validator
     DUET_NODE_MODULES=FOLDER/node_modules
 
 A missing reader is skipped and named; without any reader the test is skipped.
@@ -23,12 +23,8 @@ MODULES = pathlib.Path(os.environ.get("DUET_NODE_MODULES", "/nonexistent"))
 BLENDER = shutil.which("blender")
 
 
-def has_module(name):
-    return NODE is not None and (MODULES / name).is_dir()
-
-
+HAS_VALIDATOR = NODE is not None and (MODULES / "gltf-validator").is_dir()
 NO_VALIDATOR = "no gltf-validator; see the head of gltf_test.py"
-NO_THREE = "no three.js of npm; see the head of gltf_test.py"
 NO_BLENDER = "no blender; install the package blender"
 
 
@@ -71,20 +67,13 @@ class GltfTest(tools.FolderTest):
                     distance = max(abs(a - b) for a, b in zip(joints[name][frame], pose[joint]))
                     self.assertLess(distance, TOLERANCE_METRES, f"{role} {name}, frame {frame}")
 
-    @unittest.skipUnless(has_module("gltf-validator"), NO_VALIDATOR)
+    @unittest.skipUnless(HAS_VALIDATOR, NO_VALIDATOR)
     def test_validator_reports_no_problem(self):
         for name in ("pair.glb", "pair.gltf"):
             done = tools.run(NODE, FOLDER / "validate.js", self.folder / name,
                              env={**os.environ, "NODE_PATH": str(MODULES)})
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(json.loads(done.stdout)["issues"]["messages"], [])
-
-    @unittest.skipUnless(has_module("three"), NO_THREE)
-    def test_three_js_reads_the_same_positions(self):
-        done = tools.run(NODE, FOLDER / "positions.mjs", MODULES, self.folder / "pair.glb",
-                         len(self.pair["leader"]), self.pair["frame_rate_hz"])
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.expect_our_positions(json.loads(done.stdout))
 
     @unittest.skipUnless(BLENDER, NO_BLENDER)
     def test_blender_reads_the_same_positions(self):
@@ -97,6 +86,6 @@ class GltfTest(tools.FolderTest):
 
 
 if __name__ == "__main__":
-    if not (has_module("gltf-validator") or has_module("three") or BLENDER):
+    if not (HAS_VALIDATOR or BLENDER):
         tools.skip(f"{NO_VALIDATOR}; {NO_BLENDER}")
     tools.main()

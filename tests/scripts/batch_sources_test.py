@@ -70,44 +70,29 @@ class BatchesTest(test_project.ProjectTestCase):
         return [[source.removeprefix("model/") for source in batch]
                 for batch in batch_sources.Batches(tree, size).of(tree.files(".cc"))]
 
-    def test_files_that_keep_names_apart_share_a_batch(self):
-        self.write("model/a.cc", text=inside("constexpr int kUp = 1;"))
-        self.write("model/b.cc", text=inside("constexpr int kDown = 1;"))
-        self.assertEqual(self.batches(), [["a.cc", "b.cc"]])
-
-    def test_same_own_name_sets_files_apart(self):
-        self.write("model/a.cc", text=inside("constexpr int kUp = 1;"))
-        self.write("model/b.cc", text=inside("constexpr int kUp = 2;"))
-        self.write("model/c.cc", text=inside("void C();"))
-        self.assertEqual(self.batches(), [["a.cc", "c.cc"], ["b.cc"]])
-
-    def test_call_that_could_reach_an_overload_of_another_file_sets_apart(self):
-        self.write("model/a.cc", text=inside("int Length(int x) { return x; }"))
-        for code in (outside("int F() { return Length(1); }"), outside("int F() { return motion::Length(1); }"),
-                     outside("int F() { return Length(1); }", "duet::motion::inner"),
-                     outside("int F() { return motion::Length(1); }", "duet::other"),
-                     outside("namespace m = duet::motion;\nint F() { return m::Length(1); }", "duet::other")):
-            with self.subTest(code):
-                self.write("model/b.cc", text=code)
-                self.assertEqual(self.batches(), [["a.cc"], ["b.cc"]])
-
-    def test_names_of_other_namespaces_share_a_batch(self):
-        self.write("model/a.cc", text=inside("int Length(int x) { return x; }"))
-        for code in (inside("int Length(int x) { return x + 1; }", "duet::formats"), inside("int F() { return Length(1); }", "duet"),
-                     outside("int F() { return formats::Length(1); }")):
-            with self.subTest(code):
-                self.write("model/b.cc", text=code)
-                self.assertEqual(self.batches(), [["a.cc", "b.cc"]])
-
-    def test_static_function_is_reached_from_every_namespace(self):  # through the arguments of a call
-        self.write("model/a.cc", text=outside("static int Length(Clip x) { return 1; }"))
-        self.write("model/b.cc", text=outside("int F(motion::Clip x) { return Length(x); }", "duet::formats"))
-        self.assertEqual(self.batches(), [["a.cc"], ["b.cc"]])
-
-    def test_own_name_is_not_seen_by_files_before(self):
-        self.write("model/a.cc", text="namespace duet::motion {\nint F() { return Length(1); }\n}  // namespace duet::motion\n")
-        self.write("model/b.cc", text=inside("int Length(int x) { return x; }"))
-        self.assertEqual(self.batches(), [["a.cc", "b.cc"]])
+    def test_files_that_would_change_each_other_are_kept_apart(self):
+        length = inside("int Length(int x) { return x; }")
+        call = outside("int F() { return Length(1); }")
+        together, apart = [["a.cc", "b.cc"]], [["a.cc"], ["b.cc"]]
+        for first, second, expected in (
+                (inside("constexpr int kUp = 1;"), inside("constexpr int kDown = 1;"), together),
+                (inside("constexpr int kUp = 1;"), inside("constexpr int kUp = 2;"), apart),
+                (length, call, apart),
+                (length, outside("int F() { return motion::Length(1); }"), apart),
+                (length, outside("int F() { return Length(1); }", "duet::motion::inner"), apart),
+                (length, outside("namespace m = duet::motion;\nint F() { return m::Length(1); }", "duet::other"), apart),
+                (length, inside("int Length(int x) { return x + 1; }", "duet::formats"), together),
+                (length, outside("int F() { return formats::Length(1); }"), together),
+                (call, length, together),  # an own name is not seen by the files before
+                # A static function is reached from every namespace, through the arguments of a call.
+                (outside("static int Length(Clip x) { return 1; }"),
+                 outside("int F(motion::Clip x) { return Length(x); }", "duet::formats"), apart),
+                (inside("using Json = nlohmann::json;"), inside("using Json = nlohmann::json;"), together),
+                (inside("using Json = nlohmann::json;"), inside("using Json = other::json;"), apart)):
+            with self.subTest(first=first, second=second):
+                self.write("model/a.cc", text=first)
+                self.write("model/b.cc", text=second)
+                self.assertEqual(self.batches(), expected)
 
     def test_header_after_an_own_name_counts(self):
         self.write("model/deep.h", text=outside("inline int Deep() { return Length(1); }"))
@@ -115,14 +100,6 @@ class BatchesTest(test_project.ProjectTestCase):
         self.write("model/a.cc", text=inside("int Length(int x) { return x; }"))
         self.write("model/b.cc", "model/wide.h")
         self.assertEqual(self.batches(), [["a.cc"], ["b.cc"]])
-        self.write("model/a.cc", "model/deep.h", text=inside("int Length(int x) { return x; }"))  # before its own name
-        self.assertEqual(self.batches(), [["a.cc", "b.cc"]])
-
-    def test_equal_aliases_share_a_batch(self):
-        self.write("model/a.cc", text=inside("using Json = nlohmann::json;"))
-        self.write("model/b.cc", text=inside("using Json = nlohmann::json;"))
-        self.write("model/c.cc", text=inside("using Json = other::json;"))
-        self.assertEqual(self.batches(), [["a.cc", "b.cc"], ["c.cc"]])
 
     def test_batch_has_at_most_its_size_and_a_macro_none(self):
         for name in "abcd":
