@@ -221,39 +221,38 @@ absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments,
 }
 
 // What went wrong, in words; empty if nothing did.
-std::string DescribeLosses(const live::LiveTotals& totals) {
+std::string DescribeLosses(const LiveSummary& summary) {
+  const struct {
+    int count;
+    const char *what, *became;
+  } losses[] = {{summary.gap_frames, "missing leader frame", " interpolated"},
+                {summary.late_frames, "late leader frame", " dropped"},
+                {summary.skipped_frames, "follower frame",
+                 " from an older plan, because the server could not keep up"}};
   std::vector<std::string> parts;
-  if (totals.gap_frames > 0) {
-    parts.push_back(
-        absl::StrCat(base::Counted(totals.gap_frames, "missing leader frame"), " interpolated"));
-  }
-  if (totals.late_frames > 0) {
-    parts.push_back(
-        absl::StrCat(base::Counted(totals.late_frames, "late leader frame"), " dropped"));
-  }
-  if (totals.skipped_frames > 0) {
-    parts.push_back(absl::StrCat(base::Counted(totals.skipped_frames, "follower frame"),
-                                 " from an older plan, because the server could not keep up"));
+  for (const auto& [count, what, became] : losses) {
+    if (count > 0) parts.push_back(absl::StrCat(base::Counted(count, what), became));
   }
   return absl::StrJoin(parts, "; ");
 }
 
 std::string DescribeLive(const live::LiveReport& report) {
-  const live::LiveTotals& totals = report.totals;
+  const LiveSummary& summary = report.summary;
   std::string text;
   for (const std::string& note : report.notes) absl::StrAppend(&text, "note      ", note, "\n");
   absl::StrAppend(&text, "model     ", report.info.model_name, "@", report.info.model_version,
                   ", seed ", report.info.seed, ", delay ",
                   base::Counted(report.info.delay_frames, "frame"), "\n");
   absl::StrAppendFormat(&text, "live      %.1f s, %d follower frames at %g Hz\n",
-                        absl::ToDoubleSeconds(totals.time), totals.frames, report.frame_rate_hz);
+                        absl::ToDoubleSeconds(report.time), summary.follower_frames,
+                        report.frame_rate_hz);
   absl::StrAppendFormat(&text, "latency   p50 %.1f ms, p99 %.1f ms\n",
-                        absl::ToDoubleMilliseconds(totals.latency.p50),
-                        absl::ToDoubleMilliseconds(totals.latency.p99));
-  const std::string losses = DescribeLosses(totals);
+                        absl::ToDoubleMilliseconds(report.latency.p50),
+                        absl::ToDoubleMilliseconds(report.latency.p99));
+  const std::string losses = DescribeLosses(summary);
   if (!losses.empty()) absl::StrAppend(&text, "losses    ", losses, "\n");
-  if (totals.resumed > 0) {
-    absl::StrAppend(&text, "resumed   ", base::Counted(totals.resumed, "time"),
+  if (summary.resumed > 0) {
+    absl::StrAppend(&text, "resumed   ", base::Counted(summary.resumed, "time"),
                     ", without losing a frame\n");
   }
   for (const std::string& line : report.written) absl::StrAppend(&text, "wrote     ", line, "\n");
@@ -261,7 +260,7 @@ std::string DescribeLive(const live::LiveReport& report) {
 }
 
 std::string LiveJson(const live::LiveReport& report) {
-  const live::LiveTotals& totals = report.totals;
+  const LiveSummary& summary = report.summary;
   return Print({{"model", report.info.model_name},
                 {"model_version", report.info.model_version},
                 {"seed", report.info.seed},
@@ -271,16 +270,16 @@ std::string LiveJson(const live::LiveReport& report) {
                 {"delay_frames", report.info.delay_frames},
                 {"request_id", report.info.request_id},
                 {"frame_rate_hz", report.frame_rate_hz},
-                {"seconds", absl::ToDoubleSeconds(totals.time)},
-                {"leader_frames", report.leader_frames},
-                {"follower_frames", totals.frames},
-                {"gap_frames", totals.gap_frames},
-                {"late_frames", totals.late_frames},
-                {"skipped_frames", totals.skipped_frames},
-                {"resumed", totals.resumed},
+                {"seconds", absl::ToDoubleSeconds(report.time)},
+                {"leader_frames", summary.leader_frames},
+                {"follower_frames", summary.follower_frames},
+                {"gap_frames", summary.gap_frames},
+                {"late_frames", summary.late_frames},
+                {"skipped_frames", summary.skipped_frames},
+                {"resumed", summary.resumed},
                 {"latency_ms",
-                 {{"p50", absl::ToDoubleMilliseconds(totals.latency.p50)},
-                  {"p99", absl::ToDoubleMilliseconds(totals.latency.p99)}}},
+                 {{"p50", absl::ToDoubleMilliseconds(report.latency.p50)},
+                  {"p99", absl::ToDoubleMilliseconds(report.latency.p99)}}},
                 {"notes", report.notes},
                 {"written", report.written}});
 }

@@ -2,7 +2,6 @@
 #define DUET_CLIENT_CLI_OUTPUT_H_
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "absl/status/status.h"

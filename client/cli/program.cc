@@ -2,15 +2,15 @@
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
 #include "client/cli/command.h"
 #include "client/cli/report.h"
+#include "model/base/text.h"
 #include "model/base/usage_text.h"
 
 namespace duet::client::cli {
-using Strings = std::vector<std::string>;
 
-int RunProgram(const Strings& arguments, const ProgramEnvironment& environment) {
+int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment) {
   CLI::App app("Asks a Duet server to answer one character's motion with another's.", "duet");
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "duet " DUET_VERSION);
@@ -24,11 +24,15 @@ int RunProgram(const Strings& arguments, const ProgramEnvironment& environment) 
   app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
   try {
     // CLI11 takes the arguments in reverse.
-    app.parse(Strings(arguments.rbegin(), arguments.rend()));
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& answer) {  // --help or --version
     return app.exit(answer, *environment.out, *environment.err);
   } catch (const CLI::ParseError& error) {
-    *environment.err << base::UsageText(error.what())
+    // CLI11 does not name a first word that is no command.
+    const bool unknown = app.get_subcommands().empty() && !arguments.empty();
+    *environment.err << (unknown
+                             ? absl::StrCat("Expected a command, got ", base::Quoted(arguments[0]))
+                             : base::UsageText(error.what()))
                      << "\nRun with --help for more information.\n";
     return kExitUsage;
   }

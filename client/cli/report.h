@@ -35,8 +35,6 @@ Example:
   duet synthesize --leader kick.bvh --label kick=1 --out pair.html --out pair.bvh
 )";
 
-// What the commands print alike. Every text ends with a newline.
-
 // The error, with one line for every rejected field, and a hint.
 std::string DescribeFailure(const absl::Status& status, const std::string& server_address);
 // The flag that fixes how a file was read: "Specify it with --frame-rate HZ.\n"; empty if there is

@@ -11,7 +11,6 @@
 #include "absl/strings/strip.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "client/client.h"
 #include "client/internal/connection_impl.h"
 #include "client/internal/stub.h"
 #include "grpcpp/create_channel.h"
@@ -59,38 +58,36 @@ bool IsThisMachine(absl::string_view address) {
                      [](unsigned char c) { return absl::ascii_isdigit(c) || c == '.'; });
 }
 
+absl::Status Wrong(const std::string& name, absl::string_view expected, absl::string_view got) {
+  return absl::InvalidArgumentError(absl::StrCat(name, ": expected ", expected, ", got ", got));
+}
+
 absl::Status Check(const ClientOptions& options) {
+  const RetryOptions& retry = options.retry;
   if (options.server_address.empty()) {
-    return absl::InvalidArgumentError("server_address: expected host:port, got an empty string");
+    return Wrong("server_address", "host:port", "an empty string");
   }
   if (options.deadline <= absl::ZeroDuration()) {
-    return absl::InvalidArgumentError(absl::StrCat("deadline: expected more than 0, got ",
-                                                   absl::FormatDuration(options.deadline)));
+    return Wrong("deadline", "more than 0", absl::FormatDuration(options.deadline));
   }
   if (options.wait < absl::ZeroDuration()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("wait: expected 0 or more, got ", absl::FormatDuration(options.wait)));
+    return Wrong("wait", "0 or more", absl::FormatDuration(options.wait));
   }
-  const RetryOptions& retry = options.retry;
   if (retry.max_attempts < 1) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("retry.max_attempts: expected 1 or more, got ", retry.max_attempts));
+    return Wrong("retry.max_attempts", "1 or more", absl::StrCat(retry.max_attempts));
   }
   if (retry.initial_backoff <= absl::ZeroDuration() || retry.max_backoff < retry.initial_backoff) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("retry: expected 0 < initial_backoff <= max_backoff, got initial_backoff ",
-                     absl::FormatDuration(retry.initial_backoff), " and max_backoff ",
-                     absl::FormatDuration(retry.max_backoff)));
+    return Wrong("retry", "0 < initial_backoff <= max_backoff",
+                 absl::StrCat("initial_backoff ", absl::FormatDuration(retry.initial_backoff),
+                              " and max_backoff ", absl::FormatDuration(retry.max_backoff)));
   }
   if (!IsToken(options.token)) {
     // The message does not contain the token, because messages are logged.
-    return absl::InvalidArgumentError(
-        "token: expected printable ASCII without spaces, got another character");
+    return Wrong("token", "printable ASCII without spaces", "another character");
   }
   if (!options.token.empty() && !options.tls.has_value() &&
       !IsThisMachine(options.server_address)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("token: expected TLS to ", options.server_address, ", got plain text"));
+    return Wrong("token", absl::StrCat("TLS to ", options.server_address), "plain text");
   }
   return options.tls.has_value() ? CheckTls(*options.tls) : absl::OkStatus();
 }
@@ -147,10 +144,6 @@ RetryEnvironment ReconnectingEnvironment(std::shared_ptr<grpc::Channel> channel)
   return environment;
 }
 
-absl::Status Wrong(const std::string& name, absl::string_view expected, absl::string_view got) {
-  return absl::InvalidArgumentError(absl::StrCat(name, ": expected ", expected, ", got ", got));
-}
-
 absl::Status CheckOwnCertificate(const TlsOptions& tls, const TlsNames& names) {
   const std::vector<base::Certificate> chain = base::ReadCertificates(tls.certificate_chain);
   if (chain.empty()) {
@@ -203,13 +196,3 @@ absl::Status CheckTls(const TlsOptions& tls, const TlsNames& names) {
 }
 
 }  // namespace duet::client::internal
-
-namespace duet::client {
-
-absl::StatusOr<Client> Client::Create(const ClientOptions& options) {
-  absl::StatusOr<std::shared_ptr<Connection>> connection = internal::Connect(options);
-  if (!connection.ok()) return connection.status();
-  return Client(*std::move(connection));
-}
-
-}  // namespace duet::client

@@ -1,14 +1,12 @@
 #include "client/internal/retry.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include "absl/random/random.h"
 #include "absl/strings/cord.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/synchronization/mutex.h"
 #include "absl/time/clock.h"
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
@@ -40,22 +38,6 @@ bool HasNoServer(const AttemptEnd& end) {
          !HasDetails(end.status);
 }
 
-// Thread-safe random numbers in [0, 1). Copies share one generator.
-class SharedUniform {
- public:
-  double operator()() {
-    absl::MutexLock lock(&state_->mutex);
-    return absl::Uniform<double>(state_->generator, 0.0, 1.0);
-  }
-
- private:
-  struct State {
-    absl::Mutex mutex;
-    absl::BitGen generator;
-  };
-  std::shared_ptr<State> state_ = std::make_shared<State>();
-};
-
 struct Cause {
   absl::string_view sign;  // part of gRPC's message
   absl::string_view text;  // what follows the address
@@ -86,7 +68,10 @@ constexpr Cause kCauses[] = {
 
 RetryEnvironment SystemEnvironment() {
   return {[] { return absl::Now(); }, [](absl::Duration wait) { absl::SleepFor(wait); },
-          SharedUniform()};
+          [] {
+            thread_local absl::BitGen generator;
+            return absl::Uniform<double>(generator, 0.0, 1.0);
+          }};
 }
 
 bool IsRetryable(const absl::Status& status, Priority priority) {

@@ -58,7 +58,7 @@ absl::StatusOr<LiveReport> LiveRun::Run(const Client& client, LiveRequest reques
 absl::Status LiveRun::RunSession(const Client& client, const LiveRequest& request) {
   LiveCallbacks callbacks;
   callbacks.on_frames = [this](const LiveFrames& frames) { return Accept(frames); };
-  callbacks.on_notice = [this](const LiveNotice& notice) { Count(notice); };
+  callbacks.on_notice = on_notice_;
   callbacks.on_end = [this](const absl::Status&) { End(); };
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -73,10 +73,9 @@ absl::Status LiveRun::RunSession(const Client& client, const LiveRequest& reques
   const absl::StatusOr<LiveSummary> summary = (*session)->Finish();
   if (!summary.ok()) return summary.status();
   const std::lock_guard<std::mutex> lock(mutex_);
-  report_.totals.time = absl::Now() - begin_;
-  report_.totals.frames = answered_end_;
-  report_.totals.latency = latencies_.Percentiles();
-  report_.leader_frames = summary->leader_frames;
+  report_.summary = *summary;
+  report_.time = absl::Now() - begin_;
+  report_.latency = latencies_.Percentiles();
   return followed;
 }
 
@@ -140,18 +139,6 @@ absl::Status LiveRun::Accept(const LiveFrames& frames) {
   for (FollowerSink* sink : sinks_) status.Update(sink->Accept(frames));
   answered_.notify_all();
   return status;
-}
-
-void LiveRun::Count(const LiveNotice& notice) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  LiveTotals& totals = report_.totals;
-  if (notice.kind == LiveNotice::Kind::kGapFilled) totals.gap_frames += notice.frames.frame_count;
-  if (notice.kind == LiveNotice::Kind::kLate) totals.late_frames += notice.frames.frame_count;
-  if (notice.kind == LiveNotice::Kind::kSkipped) {
-    totals.skipped_frames += notice.frames.frame_count;
-  }
-  if (notice.kind == LiveNotice::Kind::kResumed) ++totals.resumed;
-  if (on_notice_) on_notice_(notice);
 }
 
 absl::Status LiveRun::FinishSinks() {

@@ -37,22 +37,14 @@ class LatencyLog {
   std::size_t next_ = 0;
 };
 
-// The figures of a run.
-struct LiveTotals {
-  absl::Duration time;  // since the session began
-  int frames = 0;       // final frames
-  // From the capture of the last leader frame that a follower frame waits for to its arrival:
-  // without the delay, which the caller chose.
-  Latencies latency;
-  int gap_frames = 0, late_frames = 0, skipped_frames = 0;
-  int resumed = 0;
-};
-
 // A finished run.
 struct LiveReport {
   LiveInfo info;
-  LiveTotals totals;
-  int leader_frames = 0;
+  LiveSummary summary;
+  absl::Duration time;  // since the session began
+  // From the capture of the last leader frame that a follower frame waits for to its arrival:
+  // without the delay, which the caller chose.
+  Latencies latency;
   double frame_rate_hz = 0;
   std::vector<std::string> written;  // by the sinks
   std::vector<std::string> notes;    // of the source
@@ -81,7 +73,6 @@ class LiveRun {
   void WaitForAnswers();
   void End();
   absl::Status Accept(const LiveFrames& frames);
-  void Count(const LiveNotice& notice);
   absl::Status FinishSinks();
 
   LeaderSource* const source_;

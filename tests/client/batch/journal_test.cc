@@ -137,22 +137,6 @@ TEST_F(JournalTest, FullDiskIsAnError) {
   EXPECT_THAT(Records(), ElementsAre("0zero", "1one"));
 }
 
-TEST(DurableFiles, AreCompleteOrMissing) {
-  const test::TemporaryFolder folder;
-  EXPECT_THAT(WriteDurably(folder / "tmp", folder / "a" / "b" / "file", "content"), IsOk());
-  EXPECT_EQ(ReadTestFile(folder / "a" / "b" / "file"), "content");
-  EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
-  WriteTestFile(folder / "plain", "");
-  EXPECT_THAT(WriteDurably(folder / "tmp", folder / "plain" / "file", "content"),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("plain")));
-  EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
-  const FullDisk full(3);
-  EXPECT_THAT(WriteDurably(folder / "tmp", folder / "file", "content"),
-              StatusIs(absl::StatusCode::kAborted, HasSubstr("cannot write")));
-  EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "file"));
-}
-
 TEST(FileGroup, FilesAppearTogetherWhenTheyAreCommitted) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directory(folder / "tmp");
@@ -165,6 +149,18 @@ TEST(FileGroup, FilesAppearTogetherWhenTheyAreCommitted) {
     EXPECT_EQ(ReadTestFile(folder / "a/b.npy"), "b");
     EXPECT_EQ(ReadTestFile(folder / "c.npy"), "c");
     EXPECT_THAT(files.Add("d.npy", "d"), IsOk());
+  }
+  {
+    FileGroup files(folder / "tmp", folder.path());
+    EXPECT_THAT(files.Add("c.npy/d.npy", "d"), IsOk());
+    EXPECT_THAT(files.Commit(),
+                StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("c.npy")));
+  }
+  {
+    FileGroup files(folder / "tmp", folder.path());
+    const FullDisk full(3);
+    EXPECT_THAT(files.Add("d.npy", "content"),
+                StatusIs(absl::StatusCode::kAborted, HasSubstr("cannot write")));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "d.npy"));
   EXPECT_TRUE(std::filesystem::is_empty(folder / "tmp"));

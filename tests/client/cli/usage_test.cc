@@ -95,7 +95,7 @@ TEST_F(UsageTest, ErrorsNameTheFlagWhatIsExpectedAndWhatIsGiven) {
 
 TEST_F(UsageTest, WhatIsMissingOrUnknownIsNamed) {
   ExpectUsageError({}, "A command is required");
-  ExpectUsageError({"dance"}, "dance");
+  ExpectUsageError({"dance"}, "Expected a command, got \"dance\"");
   ExpectUsageError({"models", "extra"}, "Unexpected argument \"extra\"");
   ExpectUsageError({"models", "--frobnicate"}, "--frobnicate");
   ExpectUsageError({"admin", "models", "--server", "a"}, "--server");

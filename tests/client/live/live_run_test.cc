@@ -143,9 +143,9 @@ TEST_F(LiveRunTest, GapsAndLateFramesAreCounted) {
   AddFrames(14, 16);
   const absl::StatusOr<LiveReport> report = Run();
   ASSERT_THAT(report, IsOk());
-  EXPECT_EQ(report->totals.frames, 16);
-  EXPECT_EQ(report->totals.gap_frames, 3);
-  EXPECT_EQ(report->totals.late_frames, 1);
+  EXPECT_EQ(report->summary.follower_frames, 16);
+  EXPECT_EQ(report->summary.gap_frames, 3);
+  EXPECT_EQ(report->summary.late_frames, 1);
 }
 
 TEST_F(LiveRunTest, AFailedSessionStopsTheSource) {
