@@ -38,7 +38,7 @@ class DocumentsTest(guides.GuideTest):
         self.assertEqual(self.run_blocks("docs/rotations.md"), 2)
 
     def test_the_layouts_of_research(self):
-        self.assertEqual(self.run_blocks("docs/guides/research_layouts.md"), 5)
+        self.assertEqual(self.run_blocks("docs/guides/research_layouts.md"), 3)
 
     def test_reading_in_python(self):
         for module, package in (("build", "python3-build"), ("ensurepip", "python3-venv")):
