@@ -33,6 +33,7 @@ namespace fs = std::filesystem;
 
 constexpr double kLiveRate = 30, kLowestLiveRate = 1, kHighestLiveRate = 240;  // frames a second
 constexpr int kGeneratedFrames = 300;
+constexpr char kGroup[] = "Options";                   // CLI11's name of the flags without a group
 constexpr absl::Duration kEnding = absl::Seconds(30);  // of live sessions
 
 constexpr char kFooter[] = R"(
@@ -107,9 +108,9 @@ void AddContent(CLI::App* app, LoadArguments* arguments) {
       ->check(CLI::Range(1, 10000000))
       ->capture_default_str()
       ->type_name("FRAMES");
-  cli::AddParsed(app, "--model", "NAME[@VERSION]", client::batch::ParseModelChoice,
+  cli::AddParsed(app, kGroup, "--model", "NAME[@VERSION]", client::batch::ParseModelChoice,
                  &arguments->content.model, "Also NAME:LABEL (default: the server's)");
-  cli::AddParsed(app, "--label", "CLASS=WEIGHT,...", client::batch::ParseLabels,
+  cli::AddParsed(app, kGroup, "--label", "CLASS=WEIGHT,...", client::batch::ParseLabels,
                  &arguments->content.labels, "(default: 1 for the model's first class)");
   app->add_flag("--bulk", arguments->bulk, "Give the calls the priority of bulk calls");
   app->add_option("--json", arguments->json, "Write everything; - for standard output")
