@@ -97,8 +97,7 @@ Broken BatchJournal(absl::string_view input) {
 Broken BatchJob(absl::string_view input) {
   fs::create_directory(Folder() / ".duet-batch");
   test::WriteTestFile(Folder() / ".duet-batch/job.json", Std(input));
-  return CheckRefusal(client::batch::ReadJobIdentity(Folder().path()).status(),
-                      {kFailedPrecondition});
+  return CheckRefusal(client::batch::ReadJob(Folder().path()).status(), {kFailedPrecondition});
 }
 
 }  // namespace duet::fuzz
