@@ -58,8 +58,8 @@ class Client {
   // failures themselves: makes one attempt, whatever the retry options are.
   //
   // Calls `done` once, on a thread of gRPC. Few such threads read all replies, so `done` should
-  // return quickly. Destroying the last copy of a Client waits for
-  // calls in progress, so `done` must not hold a copy.
+  // return quickly. Destroying the last copy of a Client waits for calls in progress, so `done`
+  // must not hold a copy.
   void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const {
     connection_->SynthesizeAsync(std::move(request), done);
   }

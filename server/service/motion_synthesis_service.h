@@ -36,7 +36,7 @@ struct ServiceParts {
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
   ReceptionLimits reception;
-  int buffered_frames = 0;  // see ClipStreamOptions
+  int buffered_frames = 0;  // see ClipParts
   // Maximum time that one reply may wait for its reader, and maximum duration of a call. CheckTime
   // enforces both.
   double write_timeout_seconds = std::numeric_limits<double>::infinity();
