@@ -6,7 +6,6 @@
 
 #include "model/cpu_engine/flow_network.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
-#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
 #include "model/cpu_engine/kernels/gemm_int16.h"
 #include "model/cpu_engine/paper_network.h"
 #include "model/cpu_engine/scratch.h"
@@ -77,7 +76,6 @@ class CpuNetwork : public engine::Network {
 }  // namespace
 
 kernels::Precision BestPrecision() {
-  if (kernels::HasAmx()) return kernels::Precision::kBfloat16;
   if (kernels::HasInt16()) return kernels::Precision::kInt16;
   return kernels::IsBf16Faster() ? kernels::Precision::kBfloat16 : kernels::Precision::kFloat32;
 }

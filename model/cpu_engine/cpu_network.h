@@ -10,8 +10,8 @@
 
 namespace duet::cpu_engine {
 
-// The fastest on this processor: bfloat16 in tiles (kernels::HasAmx), else integers of 16 bits
-// (kernels::HasInt16), else bfloat16 if that is faster (kernels::IsBf16Faster), else float32.
+// The fastest on this processor: integers of 16 bits (kernels::HasInt16), else bfloat16 if that is
+// faster (kernels::IsBf16Faster), else float32. Where both are fast, integers are the closer ones.
 kernels::Precision BestPrecision();
 
 // Runs a checkpoint's generator, of any architecture, in this project's own kernels.
