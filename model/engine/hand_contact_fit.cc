@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "model/base/median.h"
 #include "model/base/statistics.h"
 #include "model/body/contact.h"
 
@@ -17,6 +16,9 @@ constexpr double kMeets = 0.25;
 // exchange an object in solved captures of SBU have .37, and their hands do meet.
 constexpr double kLeastShare = 0.3;
 constexpr double kLeastSeconds = 3;
+// Of the distances of hands that meet, the larger ones belong to hands that come and go: the
+// distance at which they hold each other is the lower quartile.
+constexpr double kHolds = 0.25;
 
 }  // namespace
 
@@ -49,7 +51,7 @@ void HandContactFit::Add(const motion::Poses& leader, const motion::Poses& follo
 std::optional<double> HandContactFit::Metres(double frame_rate_hz) const {
   if (offered_ < kLeastSeconds * frame_rate_hz) return std::nullopt;
   if (base::Mean(shares_) < kLeastShare) return std::nullopt;
-  return base::Median(met_);
+  return base::Quantile(met_, kHolds);
 }
 
 }  // namespace duet::engine

@@ -20,9 +20,9 @@ class HandContactFit {
   // Adds one stretch of the class: frames [begin, end) of a pair.
   void Add(const motion::Poses& leader, const motion::Poses& follower, int begin, int end);
 
-  // The median distance of the hands that meet. Absent if the leaders offer a hand for less than
-  // 3 s, if less than two fifths of an offered hand's time is met in the mean of the stretches, or
-  // without two named arms.
+  // The lower quartile of the distances of hands that meet. Absent if the leaders offer a hand for
+  // less than 3 s, if less than three tenths of an offered hand's time is met in the mean of the
+  // stretches, or without two named arms.
   std::optional<double> Metres(double frame_rate_hz) const;
 
  private:

@@ -145,6 +145,16 @@ TEST(HandContactFit, FindsTheDistanceOfHandsThatMeet) {
   EXPECT_NEAR(*Fitted(0.1f), 0.1, 1e-6);
 }
 
+TEST(HandContactFit, IgnoresHandsThatComeAndGo) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  HandContactFit fit(skeleton);
+  for (const float gap : {0.1f, 0.2f, 0.24f}) {
+    const Pair pair = Offering(gap);
+    fit.Add(pair.leader, pair.follower, 0, kFrames);
+  }
+  EXPECT_NEAR(fit.Metres(kRate).value_or(0), 0.1, 1e-6);
+}
+
 // One long stretch in which hands meet must not decide about a class in which they seldom do.
 TEST(HandContactFit, EveryStretchCountsTheSame) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
