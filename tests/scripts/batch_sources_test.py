@@ -45,19 +45,12 @@ class NamesTest(unittest.TestCase):
         self.assertEqual(self.own(inside('// int a;\n/* int b; */ const char* kText = "{ int c; ";\nconst char* kRaw = R"x(int d; {)x";\n'
                                          "const char kBrace = '{';\nconst int kMany = 1'000;")), {"kText", "kRaw", "kBrace", "kMany"})
 
-    def test_public_declarations_are_not_own(self):
-        code = "namespace duet {\nint Public(int x) { return x; }\nvoid Clip::Read() {}\nstatic int Hidden() { return 1; }\n}  // namespace duet\n"
-        self.assertEqual(self.own(code), {"Hidden"})
-
     def test_effects_that_no_name_shows_set_a_file_alone(self):
         for code in ("#define MACRO 1\n", "#pragma GCC diagnostic push\n", inside("Vec operator+(Vec a, Vec b) { return a; }"),
                      "#ifdef X\nvoid F() {\n#else\nvoid G() {\n#endif\n}\n", "using namespace std;\n", "namespace {\nint at_top;\n}  // namespace\n"):
             with self.subTest(code):
                 self.assertTrue(cpp_names.read_names(code).alone)
         self.assertFalse(cpp_names.read_names('#include "a.h"\n#ifdef X\n#endif\n' + inside("void F() { using namespace x; }")).alone)
-
-    def test_members_and_names_of_the_library_are_not_mentions(self):
-        self.assertEqual(set(cpp_names.mentioned_names("a.b(c->d, std::e, motion::f)")), {"a", "c", "std", "motion", "f"})
 
     def test_mentions_have_their_qualifiers(self):
         self.assertEqual(cpp_names.mentioned_names("f(motion::f, engine:: f, Table<int>::g, ::h)"),

@@ -49,34 +49,24 @@ class CheckLayersTest(unittest.TestCase):
     def test_allowed_includes_pass(self):
         self.assertEqual(self.violations(), [])
 
-    def test_inner_layer_must_not_include_outer(self):
-        self.write("model/motion/clip.h", "model/engine/synthesizer.h")
-        self.assert_violation("model/motion/clip.h:1:", '"motion"', '"engine"', "it sees base")
-
-    def test_model_must_not_know_of_grpc(self):
-        self.write("model/motion/wire.cc", "cmath", "grpcpp/grpcpp.h")
-        self.assert_violation("model/motion/wire.cc:2:", "reaches rpc")
-
-    def test_model_must_not_know_of_generated_messages(self):
-        self.write("model/motion/wire.cc", "duet/v1/motion.pb.h")
-        self.assert_violation("model/motion/wire.cc:1:", "reaches rpc")
-
-    def test_model_must_not_include_the_server(self):
+    def test_what_a_layer_must_not_include_is_found(self):
         self.write("server/service/limits.h")
-        self.write("model/motion/limits.cc", "server/service/limits.h")
-        self.assert_violation("model/motion/limits.cc:1:", '"service"')
-
-    def test_server_must_not_include_torch(self):
-        self.write("server/service/warm_up.cc", "torch/torch.h")
-        self.assert_violation("server/service/warm_up.cc:1:", "reaches torch")
-
-    def test_only_main_links_an_engine(self):
-        self.write("server/registry/registry.cc", "model/cpu_engine/cpu_synthesizer.h")
-        self.assert_violation("server/registry/registry.cc:1:", '"cpu engine"')
-
-    def test_the_server_does_not_link_the_torch_engine(self):
-        self.write("server/program/torch.cc", "model/torch_engine/torch_synthesizer.h")
-        self.assert_violation("server/program/torch.cc:1:", '"torch engine"')
+        for path, include, parts in (
+                ("model/motion/inner.h", "model/engine/synthesizer.h", ('"motion"', '"engine"', "it sees base")),
+                ("model/motion/wire.cc", "grpcpp/grpcpp.h", ("reaches rpc",)),
+                ("model/motion/wire.cc", "duet/v1/motion.pb.h", ("reaches rpc",)),
+                ("model/motion/limits.cc", "server/service/limits.h", ('"service"',)),
+                ("server/service/warm_up.cc", "torch/torch.h", ("reaches torch",)),
+                ("server/registry/registry.cc", "model/cpu_engine/cpu_synthesizer.h", ('"cpu engine"',)),
+                ("server/program/torch.cc", "model/torch_engine/torch_synthesizer.h", ('"torch engine"',)),
+                ("client/call.cc", "model/engine/synthesizer.h", ('"client"', '"engine"')),
+                ("client/call.cc", "model/engine/made_while_building.h", ('"engine"',)),
+                ("model/new_idea/idea.h", "cmath", ("expected a folder of a layer",)),
+                ("model/formats/flat/csv.h", "model/formats/bvh/bvh_document.h", ('"flat formats"', '"bvh format"'))):
+            with self.subTest(path=path, include=include):
+                self.write(path, include)
+                self.assert_violation(f"{path}:1:", *parts)
+                (self.root / path).unlink()
 
     def test_torch_must_not_leak_through_a_header(self):
         self.write("model/torch_engine/torch_synthesizer.h", "model/network/generator.h")
@@ -86,22 +76,6 @@ class CheckLayersTest(unittest.TestCase):
              "torch/torch.h"],
             ['model/torch_engine/torch_synthesizer.h:1: layer "torch engine"',
              "model/network/generator.h -> torch/torch.h"]])
-
-    def test_client_must_not_see_the_engine(self):
-        self.write("client/client.cc", "model/engine/synthesizer.h")
-        self.assert_violation("client/client.cc:1:", '"client"', '"engine"')
-
-    def test_unknown_folder_is_refused(self):
-        self.write("model/new_idea/idea.h")
-        self.assert_violation("model/new_idea/idea.h:1:", "expected a folder of a layer")
-
-    def test_generated_header_has_its_folder_s_layer(self):
-        self.write("client/client.cc", "model/engine/made_while_building.h")
-        self.assert_violation("client/client.cc:1:", '"engine"')
-
-    def test_commented_include_is_ignored(self):
-        (self.root / "model/motion/clip.h").write_text("// #include <torch/torch.h>\n")
-        self.assertEqual(self.violations(), [])
 
     def test_a_source_may_reach_what_its_header_may_not(self):
         self.write("model/torch_engine/torch_synthesizer.h", "torch/torch.h")
@@ -117,11 +91,6 @@ class CheckLayersTest(unittest.TestCase):
         self.assertEqual(self.violations(), [])
         clip.write_text("#include <cmath>\nnamespace duet {\n}\n", encoding="utf-8")
         self.assert_violation("model/motion/clip.h:2:", "namespace: expected duet::motion, got duet")
-
-    def test_a_room_inside_a_room_is_a_layer_of_its_own(self):
-        self.write("model/formats/flat/csv.h", "model/formats/bvh/bvh_document.h")
-        self.write("model/formats/bvh/bvh_document.h")
-        self.assert_violation("model/formats/flat/csv.h:1:", '"flat formats"', '"bvh format"')
 
     def test_a_tool_of_contrib_may_include_every_layer(self):
         self.write("contrib/load/tests/load_test.cc", "contrib/load/load.h", "tests/support/poses.h")
@@ -139,11 +108,6 @@ class CheckLayersTest(unittest.TestCase):
             self.write(path, "cmath", "contrib/load/load.h")
             self.assert_violation(f"{path}:2:", "includes contrib/load/load.h of contrib/load")
             (self.root / path).unlink()
-
-    def test_include_circle_ends(self):
-        self.write("model/motion/a.h", "model/motion/b.h")
-        self.write("model/motion/b.h", "model/motion/a.h")
-        self.assertEqual(self.violations(), [])
 
     def test_exit_status(self):
         def run():

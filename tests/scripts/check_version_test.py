@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Shows that check_version.py finds a file with another version, and writes versions and dates."""
 
-import datetime
 import pathlib
 import shutil
 import tempfile
@@ -58,13 +57,6 @@ class CheckVersionTest(unittest.TestCase):
         check_version.write(self.root)
         self.assertEqual(self.found(), ["CHANGELOG.md: expected a section [8.1.0], got none",
                                         "docs/releases/8.1.0.md: expected release notes, got no file"])
-
-    def test_the_day_of_a_release_is_written_into_both_changelogs(self):
-        version = check_version.project_version(self.root)
-        check_version.write_date(self.root, datetime.date(2031, 2, 3))
-        self.assertIn(f"\n## [{version}] - 2031-02-03\n", (self.root / "CHANGELOG.md").read_text())
-        self.assertIn(">  Mon, 03 Feb 2031 12:00:00 +0000\n",
-                      (self.root / "deploy/debian/changelog").read_text())
 
 
 if __name__ == "__main__":

@@ -65,16 +65,6 @@ class RunTest(unittest.TestCase):
         with self.assertRaises(SystemExit):
             self.steps(["configure"], ["configure"])
 
-    def test_quick_command_may_differ(self):
-        one = check.Check("a", "nothing", "yes", "full", "-")
-        self.assertEqual(one.quick_command, "full")
-        self.assertIsNone(one._replace(in_make_test="no").quick_command)
-        self.assertEqual(one._replace(in_make_test="part of it").quick_command, "part of it")
-
-    def test_unknown_name_is_refused(self):
-        with self.assertRaisesRegex(SystemExit, "got nosuch"):
-            check.main(["nosuch"])
-
     def test_failure_decides_the_exit_status(self):
         for passed, status in ((True, 0), (False, 1)):
             with unittest.mock.patch.object(check, "step", lambda *_: passed), \

@@ -39,15 +39,6 @@ class EmbedCheckpointTest(unittest.TestCase):
             "free_for_all_uses": True,
             "weights": {**self.manifest["weights"], "file": "weights.safetensors"}})
 
-    def test_replaces_an_embedded_checkpoint(self):
-        self.embed()
-        self.manifest["description"] = "B."
-        self.assertEqual(self.embed()[1]["description"], "B.")
-
-    def test_is_free_only_by_the_flag(self):
-        self.manifest["free_for_all_uses"] = True
-        self.assertNotIn("free_for_all_uses", self.embed(free=False)[1])
-
     def test_keeps_the_terms_of_the_manifest_but_needs_some(self):
         with self.assertRaisesRegex(ValueError, "--terms: expected"):
             self.embed(terms=None)
