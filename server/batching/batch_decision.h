@@ -66,15 +66,6 @@ constexpr Lane LaneOf(Priority priority, int call_windows, bool continues_call) 
   return continues_call && call_windows > kShortCallWindows ? Lane::kLong : Lane::kShort;
 }
 
-// Returns how many of `frames` waiting frames (at least 1) a free worker takes so that all workers
-// finish at about the same time: between 1 and `frames`. While the cost is unknown, the free
-// workers take equal numbers.
-//
-// `busy_seconds`: remaining time of each batch that other workers evaluate. `free_workers`:
-// including the one that asks, at least 1.
-int EvenShare(int frames, int free_workers, std::vector<double> busy_seconds,
-              const CostEstimate& cost);
-
 // The input of a decision about one waiting window.
 struct WaitingWindow {
   std::size_t model = 0;  // index into QueueState::models

@@ -1,4 +1,3 @@
-
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -70,22 +69,115 @@ Results Evaluate(const Batch& batch) {
 
 class Batcher final : public WindowScheduler {
  public:
-  Batcher(const BatcherOptions& options, const common::Clock& clock, WindowObserver* observer);
-  ~Batcher() override;
+  Batcher(const BatcherOptions& options, const common::Clock& clock, WindowObserver* observer)
+      : clock_(clock), observer_(observer), queue_(options) {
+    for (int i = 0; i < options.workers; ++i) workers_.emplace_back([this] { Work(); });
+  }
+  ~Batcher() override {
+    {
+      common::MutexLock lock(mutex_);
+      stopping_ = true;
+    }
+    changed_.NotifyAll();
+    for (std::thread& worker : workers_) worker.join();
+  }
 
-  absl::Status Submit(WindowJob job) override;
-  absl::Status CheckRoom(Priority priority, const std::string& client) const override;
-  std::size_t queued_windows() const override;
+  absl::Status Submit(WindowJob job) override {
+    job.window.cancelled = job.cancelled;  // the model checks it while it computes
+    {
+      common::MutexLock lock(mutex_);
+      if (stopping_) return ShuttingDown();
+      const common::TimePoint now = clock_.Now();
+      if (!queue_.HasRoomFor(job, now)) return QueueFull(queue_.capacity());
+      if (!job.continues_call && !queue_.ComesInTime(job, now)) return QueueTooLong(job, now);
+      queue_.Push(std::move(job), now);
+      CountQueue();
+    }
+    changed_.NotifyOne();
+    return absl::OkStatus();
+  }
+
+  absl::Status CheckRoom(Priority priority, const std::string& client) const override {
+    common::MutexLock lock(mutex_);
+    if (stopping_) return ShuttingDown();
+    return queue_.HasRoomFor(priority, client, clock_.Now()) ? absl::OkStatus()
+                                                             : QueueFull(queue_.capacity());
+  }
+
+  std::size_t queued_windows() const override { return queued_; }
 
  private:
-  void Work();
+  void Work() {
+    while (std::optional<Turn> turn = Next()) {
+      for (DroppedWindow& dropped : turn->dropped) {
+        WindowTimings timings;
+        timings.queue_seconds = common::SecondsBetween(dropped.window.queued_at, clock_.Now());
+        Answer(std::move(dropped.window), std::move(dropped.reason), timings);
+      }
+      if (!turn->batch.windows.empty()) Run(std::move(turn->batch));
+    }
+  }
+
   // Waits for work. Absent if there will be no more.
-  std::optional<Turn> Next();
-  void WaitUntil(common::TimePoint time) DUET_REQUIRES(mutex_);
+  std::optional<Turn> Next() {
+    common::MutexLock lock(mutex_);
+    while (true) {
+      Turn turn;
+      if (stopping_) {
+        turn.dropped = queue_.DropAll(ShuttingDown(), clock_.Now());
+        CountQueue();
+        if (turn.dropped.empty()) return std::nullopt;
+        return turn;
+      }
+      turn = queue_.Next(clock_.Now());
+      CountQueue();
+      if (!turn.dropped.empty() || !turn.batch.windows.empty()) {
+        // The remaining windows may be for another free worker.
+        if (queue_.size() > 0) changed_.NotifyOne();
+        return turn;
+      }
+      WaitUntil(turn.look_again);
+    }
+  }
+
+  void WaitUntil(common::TimePoint time) DUET_REQUIRES(mutex_) {
+    if (time == common::TimePoint::max()) {
+      changed_.Wait(mutex_);
+    } else {
+      changed_.WaitUntil(mutex_, std::chrono::steady_clock::now() + (time - clock_.Now()));
+    }
+  }
+
   // Call after every change of the queue.
-  void CountQueue() DUET_REQUIRES(mutex_);
-  void Run(Batch batch);
-  void Answer(QueuedWindow window, engine::WindowResult result, WindowTimings timings) const;
+  void CountQueue() DUET_REQUIRES(mutex_) { queued_ = queue_.candidates(); }
+
+  // By value, so that the model is released as soon as its windows are done.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param)
+  void Run(Batch batch) {
+    std::vector<engine::WindowResult> results = Evaluate(batch);
+    const common::TimePoint end = clock_.Now();
+    {
+      common::MutexLock lock(mutex_);
+      queue_.Finished(batch, end);
+    }
+    WindowTimings timings;
+    timings.compute_seconds = common::SecondsBetween(batch.started_at, end);
+    timings.batch_size = batch.Candidates();
+    if (observer_ != nullptr) observer_->BatchFinished(timings);
+    for (std::size_t i = 0; i < batch.windows.size(); ++i) {
+      QueuedWindow& window = batch.windows[i];
+      timings.queue_seconds = common::SecondsBetween(window.queued_at, batch.started_at);
+      timings.frames = window.frames;
+      Answer(std::move(window), std::move(results[i]), timings);
+    }
+  }
+
+  // By value, so that the job's resources are released as soon as it is done.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param)
+  void Answer(QueuedWindow window, engine::WindowResult result, WindowTimings timings) const {
+    if (observer_ != nullptr) observer_->WindowFinished(window.job.priority, timings);
+    window.job.done({std::move(result), timings});
+  }
 
   const common::Clock& clock_;
   WindowObserver* const observer_;
@@ -96,116 +188,6 @@ class Batcher final : public WindowScheduler {
   bool stopping_ DUET_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> workers_;
 };
-
-Batcher::Batcher(const BatcherOptions& options, const common::Clock& clock,
-                 WindowObserver* observer)
-    : clock_(clock), observer_(observer), queue_(options) {
-  for (int i = 0; i < options.workers; ++i) workers_.emplace_back([this] { Work(); });
-}
-
-Batcher::~Batcher() {
-  {
-    common::MutexLock lock(mutex_);
-    stopping_ = true;
-  }
-  changed_.NotifyAll();
-  for (std::thread& worker : workers_) worker.join();
-}
-
-absl::Status Batcher::Submit(WindowJob job) {
-  job.window.cancelled = job.cancelled;  // the model checks it while it computes
-  {
-    common::MutexLock lock(mutex_);
-    if (stopping_) return ShuttingDown();
-    const common::TimePoint now = clock_.Now();
-    if (!queue_.HasRoomFor(job, now)) return QueueFull(queue_.capacity());
-    if (!job.continues_call && !queue_.ComesInTime(job, now)) return QueueTooLong(job, now);
-    queue_.Push(std::move(job), now);
-    CountQueue();
-  }
-  changed_.NotifyOne();
-  return absl::OkStatus();
-}
-
-absl::Status Batcher::CheckRoom(Priority priority, const std::string& client) const {
-  common::MutexLock lock(mutex_);
-  if (stopping_) return ShuttingDown();
-  return queue_.HasRoomFor(priority, client, clock_.Now()) ? absl::OkStatus()
-                                                           : QueueFull(queue_.capacity());
-}
-
-std::size_t Batcher::queued_windows() const { return queued_; }
-
-void Batcher::CountQueue() { queued_ = queue_.candidates(); }
-
-void Batcher::Work() {
-  while (std::optional<Turn> turn = Next()) {
-    for (DroppedWindow& dropped : turn->dropped) {
-      WindowTimings timings;
-      timings.queue_seconds = common::SecondsBetween(dropped.window.queued_at, clock_.Now());
-      Answer(std::move(dropped.window), std::move(dropped.reason), timings);
-    }
-    if (!turn->batch.windows.empty()) Run(std::move(turn->batch));
-  }
-}
-
-std::optional<Turn> Batcher::Next() {
-  common::MutexLock lock(mutex_);
-  while (true) {
-    Turn turn;
-    if (stopping_) {
-      turn.dropped = queue_.DropAll(ShuttingDown(), clock_.Now());
-      CountQueue();
-      if (turn.dropped.empty()) return std::nullopt;
-      return turn;
-    }
-    turn = queue_.Next(clock_.Now());
-    CountQueue();
-    if (!turn.dropped.empty() || !turn.batch.windows.empty()) {
-      // The remaining windows may be for another free worker.
-      if (queue_.size() > 0) changed_.NotifyOne();
-      return turn;
-    }
-    WaitUntil(turn.look_again);
-  }
-}
-
-void Batcher::WaitUntil(common::TimePoint time) {
-  if (time == common::TimePoint::max()) {
-    changed_.Wait(mutex_);
-  } else {
-    changed_.WaitUntil(mutex_, std::chrono::steady_clock::now() + (time - clock_.Now()));
-  }
-}
-
-// By value, so that the model is released as soon as its windows are done.
-// NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Batcher::Run(Batch batch) {
-  std::vector<engine::WindowResult> results = Evaluate(batch);
-  const common::TimePoint end = clock_.Now();
-  {
-    common::MutexLock lock(mutex_);
-    queue_.Finished(batch, end);
-  }
-  WindowTimings timings;
-  timings.compute_seconds = common::SecondsBetween(batch.started_at, end);
-  timings.batch_size = batch.Candidates();
-  if (observer_ != nullptr) observer_->BatchFinished(timings);
-  for (std::size_t i = 0; i < batch.windows.size(); ++i) {
-    QueuedWindow& window = batch.windows[i];
-    timings.queue_seconds = common::SecondsBetween(window.queued_at, batch.started_at);
-    timings.frames = window.frames;
-    Answer(std::move(window), std::move(results[i]), timings);
-  }
-}
-
-// By value, so that the job's resources are released as soon as it is done.
-// NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Batcher::Answer(QueuedWindow window, engine::WindowResult result,
-                     WindowTimings timings) const {
-  if (observer_ != nullptr) observer_->WindowFinished(window.job.priority, timings);
-  window.job.done({std::move(result), timings});
-}
 
 }  // namespace
 

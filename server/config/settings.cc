@@ -192,9 +192,18 @@ class Mistakes {
 
   // `got` may quote a user's text as it is.
   void Add(absl::string_view field, absl::string_view expected, absl::string_view got,
-           absl::string_view hint = "");
+           absl::string_view hint = "") {
+    Add(absl::StrCat(field, ": expected ", expected, ", got ", got), hint);
+  }
   // `message` begins with the field and a colon; it may quote a user's text as it is.
-  void Add(const std::string& message, absl::string_view hint = "");
+  void Add(const std::string& message, absl::string_view hint = "") {
+    constexpr std::size_t kMaxLineBytes = 1000;
+    const auto source = sources_.find(message.substr(0, message.find(':')));
+    std::string line = base::Printable(message, kMaxLineBytes);
+    if (source != sources_.end()) absl::StrAppend(&line, " (", source->second, ")");
+    if (!hint.empty()) absl::StrAppend(&line, "; ", hint);
+    lines_.push_back(std::move(line));
+  }
 
   std::vector<std::string> Take() { return std::move(lines_); }
 
@@ -202,21 +211,6 @@ class Mistakes {
   const SettingSources& sources_;
   std::vector<std::string> lines_;
 };
-
-constexpr std::size_t kMaxLineBytes = 1000;
-
-void Mistakes::Add(absl::string_view field, absl::string_view expected, absl::string_view got,
-                   absl::string_view hint) {
-  Add(absl::StrCat(field, ": expected ", expected, ", got ", got), hint);
-}
-
-void Mistakes::Add(const std::string& message, absl::string_view hint) {
-  const auto source = sources_.find(message.substr(0, message.find(':')));
-  std::string line = base::Printable(message, kMaxLineBytes);
-  if (source != sources_.end()) absl::StrAppend(&line, " (", source->second, ")");
-  if (!hint.empty()) absl::StrAppend(&line, "; ", hint);
-  lines_.push_back(std::move(line));
-}
 
 using common::AddressOf;
 using common::ListenAddress;

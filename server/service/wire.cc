@@ -65,25 +65,6 @@ Place& Place::Field(const FieldDescriptor* wanted, std::size_t limit_of_whole) {
   return *fields.back();
 }
 
-// One scan. Stops at the first field that occurs too often.
-class Surveyor {
- public:
-  explicit Surveyor(CodedInputStream& in) : in_(in) {}
-
-  // Returns false if the scan stopped: the bytes are malformed, or too_many() is an error.
-  bool Message(const Descriptor& type, Place& place, std::size_t limit);
-  const absl::Status& too_many() const { return too_many_; }
-
- private:
-  bool Known(const FieldDescriptor& field, uint32_t tag, Place& place);
-  bool Unknown(uint32_t tag);
-  bool Count(const std::string& path, std::size_t& count, std::size_t limit);
-
-  CodedInputStream& in_;
-  std::size_t unknown_ = 0;
-  absl::Status too_many_;
-};
-
 bool IsOfType(const FieldDescriptor& field, uint32_t tag) {
   const WireFormatLite::WireType wire = WireFormatLite::GetTagWireType(tag);
   return wire == WireFormat::WireTypeForFieldType(field.type()) ||
@@ -91,67 +72,81 @@ bool IsOfType(const FieldDescriptor& field, uint32_t tag) {
           wire == WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
 }
 
-bool Surveyor::Message(const Descriptor& type, Place& place, std::size_t limit) {
-  const Place* last = nullptr;  // most fields follow another value of the same field
-  while (const uint32_t tag = in_.ReadTag()) {
-    const int number = WireFormatLite::GetTagFieldNumber(tag);
-    const FieldDescriptor* field = last != nullptr && last->field->number() == number
-                                       ? last->field
-                                       : type.FindFieldByNumber(number);
-    const bool known = field != nullptr && IsOfType(*field, tag);
-    if (!known) {
-      if (!Unknown(tag)) return false;
-      continue;
-    }
-    Place& at = place.Field(field, limit);
-    last = &at;
-    if (!Known(*field, tag, at)) return false;
-  }
-  return in_.ConsumedEntireMessage();
-}
+// One scan. Stops at the first field that occurs too often.
+class Surveyor {
+ public:
+  explicit Surveyor(CodedInputStream& in) : in_(in) {}
 
-bool Surveyor::Known(const FieldDescriptor& field, uint32_t tag, Place& place) {
-  if (!Count(place.path, place.count, place.limit)) return false;
-  if (field.type() != FieldDescriptor::TYPE_MESSAGE) return WireFormatLite::SkipField(&in_, tag);
-  uint32_t length = 0;
-  if (!in_.ReadVarint32(&length) || length > static_cast<uint32_t>(in_.BytesUntilLimit())) {
+  // Returns false if the scan stopped: the bytes are malformed, or too_many() is an error.
+  bool Message(const Descriptor& type, Place& place, std::size_t limit) {
+    const Place* last = nullptr;  // most fields follow another value of the same field
+    while (const uint32_t tag = in_.ReadTag()) {
+      const int number = WireFormatLite::GetTagFieldNumber(tag);
+      const FieldDescriptor* field = last != nullptr && last->field->number() == number
+                                         ? last->field
+                                         : type.FindFieldByNumber(number);
+      const bool known = field != nullptr && IsOfType(*field, tag);
+      if (!known) {
+        if (!Unknown(tag)) return false;
+        continue;
+      }
+      Place& at = place.Field(field, limit);
+      last = &at;
+      if (!Known(*field, tag, at)) return false;
+    }
+    return in_.ConsumedEntireMessage();
+  }
+
+  const absl::Status& too_many() const { return too_many_; }
+
+ private:
+  bool Known(const FieldDescriptor& field, uint32_t tag, Place& place) {
+    if (!Count(place.path, place.count, place.limit)) return false;
+    if (field.type() != FieldDescriptor::TYPE_MESSAGE) return WireFormatLite::SkipField(&in_, tag);
+    uint32_t length = 0;
+    if (!in_.ReadVarint32(&length) || length > static_cast<uint32_t>(in_.BytesUntilLimit())) {
+      return false;
+    }
+    const CodedInputStream::Limit outer = in_.PushLimit(static_cast<int>(length));
+    const bool seen = Message(*field.message_type(), place, place.limit);
+    in_.PopLimit(outer);
+    return seen;
+  }
+
+  // Each field within a group counts as an unknown field.
+  bool Unknown(uint32_t tag) {
+    std::size_t open_groups = 0;
+    do {
+      switch (WireFormatLite::GetTagWireType(tag)) {
+        case WireFormatLite::WIRETYPE_START_GROUP:
+          ++open_groups;
+          break;
+        case WireFormatLite::WIRETYPE_END_GROUP:
+          if (open_groups == 0) return false;
+          --open_groups;
+          break;
+        default:
+          if (!WireFormatLite::SkipField(&in_, tag)) return false;
+      }
+      if (!Count("", unknown_, kMaxUnknown)) return false;
+      if (open_groups > 0) tag = in_.ReadTag();
+    } while (open_groups > 0 && tag != 0);
+    return open_groups == 0;
+  }
+
+  bool Count(const std::string& path, std::size_t& count, std::size_t limit) {
+    if (++count <= limit) return true;
+    too_many_ =
+        path.empty()
+            ? Malformed("", absl::StrCat("at most ", limit, " unknown fields"), "more")
+            : Malformed(path, absl::StrCat("at most ", limit, " values in a request"), "more");
     return false;
   }
-  const CodedInputStream::Limit outer = in_.PushLimit(static_cast<int>(length));
-  const bool seen = Message(*field.message_type(), place, place.limit);
-  in_.PopLimit(outer);
-  return seen;
-}
 
-// Each field within a group counts as an unknown field.
-bool Surveyor::Unknown(uint32_t tag) {
-  std::size_t open_groups = 0;
-  do {
-    switch (WireFormatLite::GetTagWireType(tag)) {
-      case WireFormatLite::WIRETYPE_START_GROUP:
-        ++open_groups;
-        break;
-      case WireFormatLite::WIRETYPE_END_GROUP:
-        if (open_groups == 0) return false;
-        --open_groups;
-        break;
-      default:
-        if (!WireFormatLite::SkipField(&in_, tag)) return false;
-    }
-    if (!Count("", unknown_, kMaxUnknown)) return false;
-    if (open_groups > 0) tag = in_.ReadTag();
-  } while (open_groups > 0 && tag != 0);
-  return open_groups == 0;
-}
-
-bool Surveyor::Count(const std::string& path, std::size_t& count, std::size_t limit) {
-  if (++count <= limit) return true;
-  too_many_ =
-      path.empty()
-          ? Malformed("", absl::StrCat("at most ", limit, " unknown fields"), "more")
-          : Malformed(path, absl::StrCat("at most ", limit, " values in a request"), "more");
-  return false;
-}
+  CodedInputStream& in_;
+  std::size_t unknown_ = 0;
+  absl::Status too_many_;
+};
 
 }  // namespace
 
