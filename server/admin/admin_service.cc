@@ -151,9 +151,7 @@ class AdminService::Call {
   void Finish(const absl::Status& status) {
     // A server that stops cancels what it has not begun.
     const absl::Status reported = absl::IsCancelled(status) ? service::DrainingRefusal() : status;
-    const metrics::CallRecord& record = opened_.scope->record();
-    log_.Audit({record.caller, record.peer, record.request_id, std::string(record.method.name),
-                arguments_, reported});
+    log_.Audit(opened_.scope->record(), reported, arguments_);
     service::CallPipeline::Report(*opened_.scope, reported, context_);
     reactor_.Finish(common::ToGrpcStatus(reported));
   }

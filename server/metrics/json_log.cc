@@ -117,14 +117,15 @@ void JsonLog::TellUnlogged() {
   }
 }
 
-void JsonLog::Audit(const AdminAction& action) {
-  Json fields = {{"caller", action.caller},
-                 {"peer", action.peer},
-                 {"request_id", action.request_id},
-                 {"action", action.action}};
-  for (const auto& [key, value] : action.arguments) fields["arguments"][key] = value;
-  fields["code"] = absl::StatusCodeToString(action.status.code());
-  if (!action.status.ok()) fields["message"] = std::string(action.status.message());
+void JsonLog::Audit(const CallRecord& call, const absl::Status& status,
+                    const std::vector<std::pair<std::string, std::string>>& arguments) {
+  Json fields = {{"caller", call.caller},
+                 {"peer", call.peer},
+                 {"request_id", call.request_id},
+                 {"action", call.method.name}};
+  for (const auto& [key, value] : arguments) fields["arguments"][key] = value;
+  fields["code"] = absl::StatusCodeToString(status.code());
+  if (!status.ok()) fields["message"] = std::string(status.message());
   sink_.Write(Line(now_(), Severity::kInfo, "admin_action", fields));
 }
 

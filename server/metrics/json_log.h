@@ -16,16 +16,6 @@
 
 namespace duet::server::metrics {
 
-// An action of an administrator, successful or not: one line of the audit log (JsonLog::Audit).
-struct AdminAction {
-  std::string caller;  // known by token or certificate; empty for an unknown caller
-  std::string peer;
-  std::string request_id;
-  std::string action;                                          // "LoadModel"
-  std::vector<std::pair<std::string, std::string>> arguments;  // {"model", "sbu"}, ...
-  absl::Status status;                                         // the result
-};
-
 enum class Severity { kInfo, kWarning, kError };
 
 // Selects the lines to log.
@@ -65,8 +55,10 @@ class JsonLog final : public CallObserver {
   // Reports the calls that were not logged since the previous call. Call it about once a second.
   void TellUnlogged();
 
-  // Logs an action of an administrator, whatever the options are.
-  void Audit(const AdminAction& action);
+  // Logs a call of an administrator, successful or not, whatever the options are. `arguments`: of
+  // the request, {"model", "sbu"} and so on.
+  void Audit(const CallRecord& call, const absl::Status& status,
+             const std::vector<std::pair<std::string, std::string>>& arguments);
 
   // Logs a message of a library, such as gRPC's about a failed handshake. Clients can cause any
   // number of those, so they are limited per second like rejected calls.

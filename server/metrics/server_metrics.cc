@@ -21,6 +21,19 @@ namespace {
 
 using Families = std::vector<prometheus::MetricFamily>;
 
+// A gauge and a counter without labels.
+prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value) {
+  prometheus::ClientMetric metric;
+  metric.gauge.value = value;
+  return {name, help, prometheus::MetricType::Gauge, {metric}};
+}
+
+prometheus::MetricFamily Counter(const std::string& name, const std::string& help, double value) {
+  prometheus::ClientMetric metric;
+  metric.counter.value = value;
+  return {name, help, prometheus::MetricType::Counter, {metric}};
+}
+
 // Returns the fields of /proc/self/stat after the program's name, which may contain any character.
 // The first is the state, field 3 in proc(5).
 std::vector<std::string> StatFields() {
@@ -83,35 +96,16 @@ void AddDescriptors(Families& families) {
   }
 }
 
-}  // namespace
-
-std::uint64_t ResidentBytes() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t pages = 0, resident = 0;
-  if (!(file >> pages >> resident)) return 0;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
-prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value) {
-  prometheus::ClientMetric metric;
-  metric.gauge.value = value;
-  return {name, help, prometheus::MetricType::Gauge, {metric}};
-}
-
-prometheus::MetricFamily Counter(const std::string& name, const std::string& help, double value) {
-  prometheus::ClientMetric metric;
-  metric.counter.value = value;
-  return {name, help, prometheus::MetricType::Counter, {metric}};
-}
-
-std::vector<prometheus::MetricFamily> ReadProcessMetrics() {
+// Reads the standard process metrics of Prometheus clients from /proc:
+//   process_cpu_seconds_total, process_start_time_seconds, process_threads,
+//   process_resident_memory_bytes, process_virtual_memory_bytes, process_open_fds, process_max_fds
+// Metrics that cannot be read are omitted.
+Families ReadProcessMetrics() {
   Families families;
   AddStat(families);
   AddDescriptors(families);
   return families;
 }
-
-namespace {
 
 using prometheus::Labels;
 
@@ -154,17 +148,11 @@ Labels PriorityLabels(batching::Priority priority) {
 
 }  // namespace
 
-// One millisecond to one minute: a window takes tens of milliseconds, a long clip a minute.
-const prometheus::Histogram::BucketBoundaries& ServerMetrics::SecondsBuckets() {
-  static const auto* const buckets = new prometheus::Histogram::BucketBoundaries{
-      0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60};
-  return *buckets;
-}
-
-const prometheus::Histogram::BucketBoundaries& ServerMetrics::BatchBuckets() {
-  static const auto* const buckets =
-      new prometheus::Histogram::BucketBoundaries{1, 2, 4, 8, 16, 32, 64};
-  return *buckets;
+std::uint64_t ResidentBytes() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t pages = 0, resident = 0;
+  if (!(file >> pages >> resident)) return 0;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 ServerMetrics::Counters& ServerMetrics::NewCounters(const char* name, const char* help) {
@@ -196,7 +184,7 @@ void ServerMetrics::CallStarted(const MethodInfo& method) {
 
 void ServerMetrics::CallFinished(const CallRecord& record) {
   Labels labels = MethodLabels(record.method);
-  handling_seconds_.Add(labels, SecondsBuckets()).Observe(record.total_seconds);
+  handling_seconds_.Add(labels, seconds_buckets_).Observe(record.total_seconds);
   labels["grpc_code"] = CodeLabel(record.status.code());
   handled_.Add(labels).Increment();
   if (const std::string reason = common::ReasonOf(record.status); !reason.empty()) {
@@ -207,7 +195,7 @@ void ServerMetrics::CallFinished(const CallRecord& record) {
   }
   in_flight_.Add({{"method", std::string(record.method.name)}}).Decrement();
   if (record.first_chunk_seconds >= 0) {
-    first_chunk_seconds_.Add({{"priority", std::string(record.priority)}}, SecondsBuckets())
+    first_chunk_seconds_.Add({{"priority", std::string(record.priority)}}, seconds_buckets_)
         .Observe(record.first_chunk_seconds);
   }
   if (record.frames > 0) {
@@ -218,7 +206,7 @@ void ServerMetrics::CallFinished(const CallRecord& record) {
 
 void ServerMetrics::WindowFinished(batching::Priority priority,
                                    const batching::WindowTimings& timings) {
-  queue_seconds_.Add(PriorityLabels(priority), SecondsBuckets()).Observe(timings.queue_seconds);
+  queue_seconds_.Add(PriorityLabels(priority), seconds_buckets_).Observe(timings.queue_seconds);
   if (timings.batch_size == 0) {
     windows_dropped_.Add(PriorityLabels(priority)).Increment();
   } else {

@@ -5,7 +5,6 @@
 #include <prometheus/family.h>
 #include <prometheus/gauge.h>
 #include <prometheus/histogram.h>
-#include <prometheus/metric_family.h>
 #include <prometheus/registry.h>
 
 #include <atomic>
@@ -21,18 +20,8 @@
 
 namespace duet::server::metrics {
 
-// Reads the standard process metrics of Prometheus clients from /proc:
-//   process_cpu_seconds_total, process_start_time_seconds, process_threads,
-//   process_resident_memory_bytes, process_virtual_memory_bytes, process_open_fds, process_max_fds
-// Metrics that cannot be read are omitted.
-std::vector<prometheus::MetricFamily> ReadProcessMetrics();
-
 // Returns the resident memory of this process; 0 if it cannot be read.
 std::uint64_t ResidentBytes();
-
-// A gauge and a counter without labels.
-prometheus::MetricFamily Gauge(const std::string& name, const std::string& help, double value);
-prometheus::MetricFamily Counter(const std::string& name, const std::string& help, double value);
 
 // Limits of the server.
 struct Capacity {
@@ -102,9 +91,11 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   Counters& NewCounters(const char* name, const char* help);
   Gauges& NewGauges(const char* name, const char* help);
   Histograms& NewHistograms(const char* name, const char* help);
-  static const prometheus::Histogram::BucketBoundaries& SecondsBuckets();
-  static const prometheus::Histogram::BucketBoundaries& BatchBuckets();
 
+  // One millisecond to one minute: a window takes tens of milliseconds, a long clip a minute.
+  const prometheus::Histogram::BucketBoundaries seconds_buckets_ = {
+      0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60};
+  const prometheus::Histogram::BucketBoundaries batch_buckets_ = {1, 2, 4, 8, 16, 32, 64};
   prometheus::Registry registry_;
   Counters& started_ = NewCounters("grpc_server_started_total", "RPCs started on the server.");
   Counters& handled_ =
@@ -121,10 +112,10 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
       NewHistograms("duet_queue_seconds", "Time that a window waited for a worker.");
   prometheus::Histogram& compute_seconds_ =
       NewHistograms("duet_compute_seconds", "Time of one batch in the network.")
-          .Add({}, SecondsBuckets());
+          .Add({}, seconds_buckets_);
   prometheus::Histogram& batch_size_ =
       NewHistograms("duet_batch_size", "Windows evaluated together, once for each candidate.")
-          .Add({}, BatchBuckets());
+          .Add({}, batch_buckets_);
   Counters& windows_dropped_ =
       NewCounters("duet_windows_dropped_total",
                   "Windows that never started: cancelled, or too late for their deadline.");

@@ -88,8 +88,6 @@ AccessControl::Decision AccessControl::Decide(const Credentials& credentials, Ro
   return decision;
 }
 
-std::size_t AccessControl::callers() const { return list()->size(); }
-
 std::shared_ptr<const AccessControl::List> AccessControl::list() const {
   common::MutexLock lock(mutex_);
   return list_;

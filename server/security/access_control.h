@@ -95,8 +95,6 @@ class AccessControl {
   // token counts: a wrong one is rejected whatever the certificate is.
   Decision Decide(const Credentials& credentials, Role role) const;
 
-  std::size_t callers() const;
-
  private:
   using List = std::vector<std::shared_ptr<const KnownCaller>>;
   std::shared_ptr<const List> list() const;

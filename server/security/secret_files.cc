@@ -18,6 +18,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
+#include "absl/time/clock.h"
 #include "model/base/counted.h"
 #include "model/base/file.h"
 #include "model/base/pem.h"
@@ -48,13 +49,14 @@ absl::Status ReadPem(absl::string_view setting, const std::filesystem::path& pat
   return absl::OkStatus();
 }
 
-absl::Status CheckChain(const std::vector<base::Certificate>& chain, absl::Time now) {
+absl::Status CheckChain(const std::vector<base::Certificate>& chain) {
   if (chain.empty()) {
     return absl::InvalidArgumentError(
         "tls_certificate_file: expected PEM, the server's own certificate first, got none");
   }
   const absl::Time from = ToTime(X509_get0_notBefore(chain.front().get()));
   const absl::Time until = ToTime(X509_get0_notAfter(chain.front().get()));
+  const absl::Time now = absl::Now();
   if (from <= now && now <= until) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat("tls_certificate_file: expected a certificate that is valid now, got one valid "
@@ -144,11 +146,11 @@ absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files) {
   return material;
 }
 
-absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now) {
+absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material) {
   const std::vector<base::Certificate> chain = base::ReadCertificates(material.certificate_chain);
   const base::PrivateKey key = base::ReadPrivateKey(material.private_key);
-  const absl::Status status = common::Join({CheckChain(chain, now), CheckKey(chain, key),
-                                            CheckAuthorities(material.client_authorities)});
+  const absl::Status status = common::Join(
+      {CheckChain(chain), CheckKey(chain, key), CheckAuthorities(material.client_authorities)});
   if (!status.ok()) return status;
   return ToTime(X509_get0_notAfter(chain.front().get()));
 }
@@ -356,7 +358,7 @@ constexpr std::size_t kMaxAccessBytes = std::size_t{1} << 20;
 absl::StatusOr<std::unique_ptr<SecretFiles>> SecretFiles::Open(Options options) {
   std::unique_ptr<SecretFiles> files(new SecretFiles(std::move(options)));
   if (!files->options_.access.empty()) {
-    files->access_ = std::make_unique<AccessControl>(*files->options_.clock);
+    files->access_ = std::make_unique<AccessControl>(common::Clock::Real());
   }
   files->Refresh();
   const absl::Status state = files->state();
@@ -407,7 +409,7 @@ absl::Status SecretFiles::TakeAccess(const absl::StatusOr<std::string>& text) {
 
 absl::Status SecretFiles::TakeTls(const absl::StatusOr<TlsMaterial>& material) {
   if (!material.ok()) return material.status();
-  const absl::StatusOr<absl::Time> end = CheckTlsMaterial(*material, options_.now());
+  const absl::StatusOr<absl::Time> end = CheckTlsMaterial(*material);
   if (!end.ok()) return end.status();
   certificate_end_ = *end;
   if (certificates_ == nullptr) {

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,9 +14,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "server/common/clock.h"
 #include "server/common/mutex.h"
 #include "server/security/access_control.h"
 
@@ -47,9 +44,9 @@ struct TlsFiles {
 absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files);
 
 // Checks that a handshake can succeed: certificates and key are PEM, the key belongs to the first
-// certificate, and that certificate is valid at `now`. Returns the end of its validity.
+// certificate, and that certificate is valid now. Returns the end of its validity.
 // Fails with INVALID_ARGUMENT and one line for each wrong setting; never with any part of the key.
-absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now);
+absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material);
 
 // The certificates for the next handshake. They can be replaced at any time; open connections keep
 // theirs.
@@ -122,10 +119,8 @@ struct Reload {
 class SecretFiles {
  public:
   struct Options {
-    TlsFiles tls;                                         // no certificate: plain text
-    std::filesystem::path access;                         // empty: no access list
-    const common::Clock* clock = &common::Clock::Real();  // for callers' limits
-    std::function<absl::Time()> now = absl::Now;          // for the validity of certificates
+    TlsFiles tls;                  // no certificate: plain text
+    std::filesystem::path access;  // empty: no access list
   };
 
   // Reads the files. Fails with INVALID_ARGUMENT, NOT_FOUND or PERMISSION_DENIED and one line for

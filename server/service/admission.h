@@ -56,7 +56,6 @@ class Admission {
   absl::StatusOr<ShareLease> ArriveSlowly(const std::string& client);
 
   std::size_t calls() const { return places_.taken(); }
-  std::size_t max_calls() const { return places_.amount(); }
   std::size_t held_bytes() const { return bytes_.taken(); }
 
  private:

@@ -2,6 +2,7 @@
 // admin service.
 
 #include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -20,14 +22,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "duet/admin/v1/admin.grpc.pb.h"
+#include "server/lifecycle/run_server.h"
 #include "tests/integration/running_server.h"
-#include "tests/server/support/gated_model.h"
-#include "tests/server/support/http_get.h"
+#include "tests/server/support/fakes.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -38,37 +39,11 @@ namespace fs = std::filesystem;
 namespace admin = ::duet::admin::v1;
 
 using nlohmann::json;
+using server::registry::ModelSource;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
-// Lets somebody through once it is open.
-class Gate {
- public:
-  // Says that somebody is here, and waits.
-  void Pass() {
-    server::common::MutexLock lock(mutex_);
-    reached_ = true;
-    changed_.NotifyAll();
-    while (!open_) changed_.Wait(mutex_);
-  }
-  void WaitUntilReached() {
-    server::common::MutexLock lock(mutex_);
-    while (!reached_) changed_.Wait(mutex_);
-  }
-  void Open() {
-    server::common::MutexLock lock(mutex_);
-    open_ = true;
-    changed_.NotifyAll();
-  }
-
- private:
-  server::common::Mutex mutex_;
-  server::common::CondVar changed_;
-  bool reached_ DUET_GUARDED_BY(mutex_) = false;
-  bool open_ DUET_GUARDED_BY(mutex_) = false;
-};
+using ::testing::Not;
 
 // A server over a repository of made-up checkpoints: a manifest is a word, "good", "bad", "gated"
 // (its loading waits at the gate) or "held" (its evaluations wait at held_model's).
@@ -80,7 +55,7 @@ class ModelLifecycleTest : public ::testing::Test {
     options.set_model_repository(folder_.path().string());
     options.set_admin_listen("127.0.0.1:0");
     server_.emplace(options);
-    const server::registry::ModelSource source = {
+    const ModelSource source = {
         "fake", [this](const fs::path& folder) { return LoadTestModel(folder); }, {}};
     ASSERT_THAT((*server_)->Load(source, [] { return false; }), IsOk());
     stub_ = admin::Admin::NewStub(grpc::CreateChannel(
@@ -120,42 +95,35 @@ class ModelLifecycleTest : public ::testing::Test {
   std::string Metrics() { return HttpGet(server().metrics_port(), "/metrics"); }
 
   // Admin calls.
-  grpc::Status LoadModel(const std::string& name, uint32_t version) {
+  template <typename Request, typename Response>
+  grpc::Status Ask(grpc::Status (admin::Admin::Stub::*method)(grpc::ClientContext*, const Request&,
+                                                              Response*),
+                   const std::string& fields, Response* response = nullptr) {
     TimedContext context;
-    admin::LoadModelRequest request;
-    request.set_name(name);
-    request.set_version(version);
-    admin::LoadModelResponse response;
-    return stub_->LoadModel(&context, request, &response);
+    Request request;
+    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(fields, &request)) << fields;
+    Response unused;
+    return (*stub_.*method)(&context, request, response == nullptr ? &unused : response);
+  }
+  static std::string Version(const std::string& name, uint32_t version) {
+    return absl::StrCat("name: '", name, "' version: ", version);
+  }
+  grpc::Status LoadModel(const std::string& name, uint32_t version) {
+    return Ask(&admin::Admin::Stub::LoadModel, Version(name, version));
   }
   grpc::Status UnloadModel(const std::string& name, uint32_t version) {
-    TimedContext context;
-    admin::UnloadModelRequest request;
-    request.set_name(name);
-    request.set_version(version);
-    admin::UnloadModelResponse response;
-    return stub_->UnloadModel(&context, request, &response);
+    return Ask(&admin::Admin::Stub::UnloadModel, Version(name, version));
   }
   grpc::Status Reload(admin::ReloadResponse* response) {
-    TimedContext context;
-    return stub_->Reload(&context, admin::ReloadRequest(), response);
+    return Ask(&admin::Admin::Stub::Reload, "", response);
   }
   grpc::Status SetLabel(const std::string& name, const std::string& label, uint32_t version) {
-    TimedContext context;
-    admin::SetLabelRequest request;
-    request.set_name(name);
-    request.set_label(label);
-    request.set_version(version);
-    admin::SetLabelResponse response;
-    return stub_->SetLabel(&context, request, &response);
+    return Ask(&admin::Admin::Stub::SetLabel,
+               absl::StrCat(Version(name, version), " label: '", label, "'"));
   }
   grpc::Status DeleteLabel(const std::string& name, const std::string& label) {
-    TimedContext context;
-    admin::DeleteLabelRequest request;
-    request.set_name(name);
-    request.set_label(label);
-    admin::DeleteLabelResponse response;
-    return stub_->DeleteLabel(&context, request, &response);
+    return Ask(&admin::Admin::Stub::DeleteLabel,
+               absl::StrCat("name: '", name, "' label: '", label, "'"));
   }
   // "name/version STATE" and labels.
   std::vector<std::string> ListModels() {
@@ -364,36 +332,149 @@ TEST(AdminListenerTest, IsClosedUnlessItIsConfigured) {
       << "nor does the service's own listener have it";
 }
 
-TEST(AdminListenerTest, APortInUseIsNamed) {
-  Running first;
-  EventSink log;
-  v1::ServerConfig options = TestOptions();
-  options.set_admin_listen(absl::StrCat("127.0.0.1:", first->port()));
-  EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr(options.admin_listen())));
+// The setting `models`: which embedded models and which checkpoints a server loads.
+
+using Model = std::shared_ptr<const engine::Synthesizer>;
+
+constexpr char kRefused[] =
+    "free_for_all_uses: expected true because of the setting models, got false";
+constexpr char kNoneLeft[] =
+    "no model could be loaded; models: expected at least one that is free for all uses, got none";
+
+Model MakeModel(const std::string& name, int version, bool is_free) {
+  engine::ModelDescription description = FakeDescription();
+  description.name = name;
+  description.version = version;
+  description.free_for_all_uses = is_free;
+  return std::make_shared<FakeSynthesizer>(description);
 }
 
-TEST(AdminOfEmbeddedModelsTest, HasLabelsAndNothingToLoad) {
+// The manifest of a made-up checkpoint is a word: "free" or "research".
+absl::StatusOr<Model> LoadFolder(const fs::path& folder) {
+  std::string word;
+  std::ifstream(folder / "manifest.json") >> word;
+  return MakeModel(folder.parent_path().filename(), std::stoi(folder.filename()), word == "free");
+}
+
+ModelSource Embedding(std::vector<Model> models) {
+  return {"fake", LoadFolder, [models = std::move(models)] { return models; }};
+}
+
+ModelSource ThreeEmbedded() {
+  return Embedding(
+      {MakeModel("first", 2, false), MakeModel("first", 1, false), MakeModel("dance", 1, true)});
+}
+
+v1::ServerConfig Options(v1::ServedModels models, const std::string& repository = "") {
   v1::ServerConfig options = TestOptions();
-  options.set_admin_listen("127.0.0.1:0");
-  Running server(options);
-  server.Load();
-  ASSERT_THAT(server->Serve(), IsOk());
-  const auto stub = admin::Admin::NewStub(grpc::CreateChannel(
-      absl::StrCat("127.0.0.1:", server->admin_port()), grpc::InsecureChannelCredentials()));
-  {
-    TimedContext context;
-    admin::LoadModelRequest request;
-    request.set_name("fake");
-    request.set_version(1);
-    admin::LoadModelResponse response;
-    const grpc::Status status = stub->LoadModel(&context, request, &response);
-    EXPECT_EQ(status.error_code(), StatusCode::FAILED_PRECONDITION);
-    EXPECT_THAT(status.error_message(), HasSubstr("model_repository"));
-  }
+  options.set_models(models);
+  if (!repository.empty()) options.set_model_repository(repository);
+  return options;
+}
+
+absl::Status Load(Running& server, const ModelSource& source) {
+  return server->Load(source, [] { return false; });
+}
+
+// "name/version" of each model that the server reports, with "*" if it is the default and "free" if
+// it is free for all uses.
+std::vector<std::string> Served(Running& server) {
   TimedContext context;
-  admin::ReloadResponse response;
-  EXPECT_TRUE(stub->Reload(&context, admin::ReloadRequest(), &response).ok());
+  v1::ListModelsResponse list;
+  EXPECT_TRUE(server.stub->ListModels(&context, v1::ListModelsRequest(), &list).ok());
+  std::vector<std::string> models;
+  for (const v1::Model& model : list.models()) {
+    models.push_back(absl::StrCat(model.name(), "/", model.version(), model.is_default() ? "*" : "",
+                                  model.free_for_all_uses() ? " free" : ""));
+  }
+  return models;
+}
+
+TEST(EmbeddedModelsTest, FreeServesOnlyFreeOnesAndNamesTheOthers) {
+  Running server(Options(v1::SERVED_MODELS_FREE));
+  ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
+  ASSERT_THAT(server->Serve(), IsOk());
+  EXPECT_THAT(Served(server), ElementsAre("dance/1* free"));
+  const std::vector<json> left_out = server.log.Events("models_left_out");
+  ASSERT_EQ(left_out.size(), 1u);
+  EXPECT_EQ(left_out[0]["sources"], json({"embedded/first/2", "embedded/first/1"}));
+  Running none_left(Options(v1::SERVED_MODELS_FREE));
+  ASSERT_THAT(Load(none_left, Embedding({MakeModel("first", 1, false)})), IsOk());
+  EXPECT_THAT(none_left->Serve(), StatusIs(absl::StatusCode::kFailedPrecondition, kNoneLeft));
+}
+
+// Servers over a repository.
+class FreeRepositoryTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Write("dance/1", "free");
+    Write("sbu/1", "research");
+  }
+
+  void Write(const std::string& place, const std::string& manifest) {
+    fs::create_directories(folder_ / place);
+    WriteTestFile(folder_ / "next", manifest);
+    fs::rename(folder_ / "next", folder_ / (place + "/manifest.json"));
+  }
+  std::string repository() const { return folder_.path().string(); }
+
+  static server::registry::ReloadReport Reload(Running& server) {
+    std::promise<absl::StatusOr<server::registry::ReloadReport>> done;
+    server->control().Reload([&done](const auto& report) { done.set_value(report); });
+    absl::StatusOr<server::registry::ReloadReport> report = done.get_future().get();
+    EXPECT_THAT(report, IsOk());
+    return *report;
+  }
+  // What the admin service calls.
+  static absl::Status LoadVersion(Running& server, const std::string& name, uint32_t version) {
+    std::promise<absl::Status> done;
+    server->control().Load(name, version, [&done](absl::Status status) { done.set_value(status); });
+    return done.get_future().get();
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(FreeRepositoryTest, FreeRefusesOtherCheckpointsAtAReloadAndByRequest) {
+  Running server(Options(v1::SERVED_MODELS_FREE, repository()));
+  ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
+  ASSERT_THAT(server->Serve(), IsOk());
+  Write("dance/1", "research");
+  Write("dance/2", "free");
+  Write("sbu/2", "research");
+  const server::registry::ReloadReport report = Reload(server);
+  EXPECT_THAT(report.loaded, ElementsAre("dance/2"));
+  EXPECT_THAT(report.refused, ElementsAre("dance/1", "sbu/2", "sbu/1"));
+  EXPECT_THAT(LoadVersion(server, "sbu", 2),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(kRefused)));
+  EXPECT_THAT(Served(server), ElementsAre("dance/2* free", "dance/1 free"))
+      << "the free checkpoint that dance/1 was stays";
+}
+
+// What --check-config writes, and its exit code.
+std::pair<std::string, int> Check(const v1::ServerConfig& options, const ModelSource& source) {
+  std::ostringstream out;
+  const int code = server::lifecycle::CheckConfig({options, source, {}, {}}, out);
+  return {out.str(), code};
+}
+
+TEST_F(FreeRepositoryTest, CheckConfigReportsWhatTheStartLoads) {
+  EXPECT_EQ(Check(Options(v1::SERVED_MODELS_FREE), ThreeEmbedded()),
+            std::make_pair(std::string("ok: embedded/dance/1\nleft out, not free for all uses: "
+                                       "embedded/first/2, embedded/first/1\n"),
+                           0));
+  const auto [of_repository, refused] =
+      Check(Options(v1::SERVED_MODELS_FREE, repository()), ThreeEmbedded());
+  EXPECT_THAT(of_repository, AllOf(HasSubstr("ok: dance/1\n"),
+                                   HasSubstr(absl::StrCat("wrong: sbu/1: ", kRefused))));
+  EXPECT_EQ(refused, 1);
+  const auto [none_left, failed] =
+      Check(Options(v1::SERVED_MODELS_FREE), Embedding({MakeModel("first", 1, false)}));
+  EXPECT_THAT(none_left, HasSubstr(absl::StrCat("wrong: ", kNoneLeft)));
+  EXPECT_EQ(failed, 1);
+  EXPECT_THAT(Check(Options(v1::SERVED_MODELS_ALL), ThreeEmbedded()).first,
+              Not(HasSubstr("left out")));
 }
 
 }  // namespace

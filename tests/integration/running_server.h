@@ -18,7 +18,7 @@
 #include "server/common/mutex.h"
 #include "server/config/settings.h"
 #include "server/lifecycle/duet_server.h"
-#include "tests/server/support/timed_context.h"
+#include "tests/server/support/raw_call.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/status_matchers.h"
 

@@ -6,12 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
-#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -21,21 +17,17 @@
 #include "absl/strings/str_cat.h"
 #include "server/lifecycle/duet_server.h"
 #include "tests/integration/running_server.h"
-#include "tests/server/support/gated_model.h"
-#include "tests/server/support/http_get.h"
+#include "tests/server/support/fakes.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::test {
 namespace {
 
-using ::testing::_;
 using ::testing::AllOf;
-using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -43,8 +35,6 @@ using ::testing::StartsWith;
 
 using absl::StatusCode;
 using nlohmann::json;
-
-const auto kPatient = [](double) { return true; };
 
 TEST(LoadingTest, TheServerListensAndSaysThatItIsNotReady) {
   Running server;
@@ -106,19 +96,6 @@ TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
   const std::vector<json> refused = server.log.Events("version_label_refused");
   ASSERT_EQ(refused.size(), 1u);
   EXPECT_THAT(refused[0]["message"].get<std::string>(), HasSubstr("canary"));
-}
-
-TEST(LoadingTest, RefusesALabelOfAModelThatThereIsNot) {
-  v1::ServerConfig options = TestOptions();
-  AddLabel("fake", "stable", 1, &options);
-  AddLabel("fak", "canary", 1, &options);
-  Running server(options);
-  server.Load();
-  EXPECT_THAT(server->Serve(),
-              StatusIs(StatusCode::kInvalidArgument,
-                       "version_labels[1].model: expected one of: fake, got \"fak\"; did you mean "
-                       "fake?"));
-  EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
 }
 
 // What a server says of itself while its self-check fails, and when it succeeds again.
@@ -183,45 +160,21 @@ TEST(ReadinessTest, ASelfCheckThatSucceedsDoesNotEndADrain) {
 TEST(ListenTest, ASecondServerOnAPortFailsAndSaysWhere) {
   Running first;
   EventSink log;
-  v1::ServerConfig options = TestOptions();
-  options.set_listen(absl::StrCat("127.0.0.1:", first->port()));
-  EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
-              StatusIs(StatusCode::kUnavailable, HasSubstr(options.listen())));
-  options = TestOptions();
-  options.set_metrics_listen(absl::StrCat("127.0.0.1:", first->metrics_port()));
-  EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
-              StatusIs(StatusCode::kUnavailable, HasSubstr(options.metrics_listen())));
-}
-
-// A setting of HTTP/2 that a server announces to whoever connects; nothing where it does not.
-std::optional<std::uint32_t> Http2Setting(int port, int wanted) {
-  const std::string no_settings("\0\0\0\x04\0\0\0\0\0", 9);
-  // Far longer than a frame may be: the server ends the connection, and with it the exchange.
-  const std::string last("\xff\xff\xff\0\0\0\0\0\x01", 9);
-  const std::string answer =
-      Exchange(port, "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + no_settings + last);
-  const auto number = [&answer](std::size_t at, std::size_t bytes) {
-    std::uint32_t value = 0;
-    for (std::size_t i = at; i < at + bytes; ++i) {
-      value = value << 8 | static_cast<unsigned char>(answer.at(i));
-    }
-    return value;
+  const auto expect_fails = [&](const v1::ServerConfig& options, const std::string& address) {
+    EXPECT_THAT(server::lifecycle::DuetServer::Start(options, log),
+                StatusIs(StatusCode::kUnavailable, HasSubstr(address)));
   };
-  // RFC 9113: a frame's head has its length in 3 bytes and is 9 long, a setting 2 + 4.
-  const std::size_t end = 9 + number(0, 3);
-  for (std::size_t at = 9; at < end; at += 6) {
-    if (number(at, 2) == static_cast<std::uint32_t>(wanted)) return number(at + 2, 4);
-  }
-  return std::nullopt;
-}
-
-// Calls beyond max_calls reach our own refusal, which has details.
-TEST(ListenTest, AConnectionMayHaveTwiceAsManyStreamsAsThereMayBeCalls) {
+  const std::string grpc = absl::StrCat("127.0.0.1:", first->port());
+  const std::string http = absl::StrCat("127.0.0.1:", first->metrics_port());
   v1::ServerConfig options = TestOptions();
-  options.set_max_calls(21);
-  Running server(options);
-  constexpr int kMaxConcurrentStreams = 3;
-  EXPECT_EQ(Http2Setting(server->port(), kMaxConcurrentStreams), 42u);
+  options.set_admin_listen(grpc);
+  expect_fails(options, grpc);
+  options = TestOptions();
+  options.set_listen(grpc);
+  expect_fails(options, grpc);
+  options = TestOptions();
+  options.set_metrics_listen(http);
+  expect_fails(options, http);
 }
 
 // ServerReflectionRequest{list_services = 7: ""}.
@@ -280,17 +233,6 @@ TEST(DrainTest, ServesOnForDrainSecondsWhileHealthSaysNo) {
   EXPECT_THAT(waits, ElementsAre(7));
 }
 
-TEST(DrainTest, AWatchSeesTheChange) {
-  Running server;
-  server.Load();
-  ASSERT_THAT(server->Serve(), IsOk());
-  RawCall watch(server.channel, "/grpc.health.v1.Health/Watch", "");
-  EXPECT_EQ(watch.Read().value_or(""), "\x08\x01");
-  std::thread drain([&] { server->Drain(kPatient); });
-  EXPECT_EQ(watch.Read().value_or(""), "\x08\x02");
-  drain.join();
-}
-
 TEST(DrainTest, ACallUnderWayFinishesAndNewOnesAreSentElsewhere) {
   GatedModel model;
   Running server;
@@ -315,47 +257,28 @@ TEST(DrainTest, ACallUnderWayFinishesAndNewOnesAreSentElsewhere) {
   EXPECT_TRUE(reply.messages.back().has_summary());
 }
 
-// What became of a call that its model held up while the server drained.
-struct HeldUpCall {
-  std::vector<double> waits;  // that the drain asked for, seconds
-  Refusal refusal;
-  int aborted_calls = 0;  // as logged
-};
-
-// `wait` says whether to go on after so many waits.
-HeldUpCall DrainWithACallHeldUp(double drain_seconds, double grace_seconds,
-                                const std::function<bool(std::size_t waits)>& wait) {
-  HeldUpCall call;
+TEST(DrainTest, ACallThatOutlivesTheGraceEndsAsUnavailable) {
   GatedModel model;
   v1::ServerConfig options = TestOptions();
-  options.set_drain_seconds(drain_seconds);
-  options.set_grace_seconds(grace_seconds);
+  options.set_drain_seconds(0);
+  options.set_grace_seconds(0.2);
   Running server(options);
   server.Load(model.get());
-  if (!server->Serve().ok()) {
-    ADD_FAILURE() << "the server does not serve";
-    return call;
-  }
+  ASSERT_THAT(server->Serve(), IsOk());
   Reply reply;
   std::thread caller([&] { reply = Call(*server.stub, SampleRequest(200)); });
   model.WaitUntilStarted(1);
+  double waited = 0;
   server->Drain([&](double seconds) {
-    call.waits.push_back(seconds);
-    return wait(call.waits.size());
+    waited += seconds;
+    return true;
   });
   caller.join();
-  call.refusal = Decode(reply.status);
-  call.aborted_calls = server.log.Events("stopped")[0]["aborted_calls"];
+  EXPECT_NEAR(waited, 0.2, 1e-9);
+  EXPECT_EQ(Decode(reply.status).code, StatusCode::kUnavailable);
+  EXPECT_EQ(Decode(reply.status).reason, "SERVER_DRAINING");
+  EXPECT_EQ(server.log.Events("stopped")[0]["aborted_calls"], 1);
   model.Open();
-  return call;
-}
-
-TEST(DrainTest, ACallThatOutlivesTheGraceEndsAsUnavailable) {
-  const HeldUpCall call = DrainWithACallHeldUp(0, 0.2, [](std::size_t) { return true; });
-  EXPECT_NEAR(std::accumulate(call.waits.begin(), call.waits.end(), 0.0), 0.2, 1e-9);
-  EXPECT_EQ(call.refusal.code, StatusCode::kUnavailable);
-  EXPECT_EQ(call.refusal.reason, "SERVER_DRAINING");
-  EXPECT_EQ(call.aborted_calls, 1);
 }
 
 }  // namespace

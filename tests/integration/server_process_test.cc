@@ -26,11 +26,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "model/base/sha256.h"
-#include "tests/server/support/http_get.h"
+#include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {

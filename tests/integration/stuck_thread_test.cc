@@ -15,9 +15,8 @@
 
 #include "absl/strings/match.h"
 #include "tests/integration/server_process.h"
-#include "tests/server/support/http_get.h"
+#include "tests/server/support/raw_call.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {

@@ -19,7 +19,6 @@ using common::TimePoint;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr auto kCancelled = absl::StatusCode::kCancelled;
 constexpr auto kDeadlineExceeded = absl::StatusCode::kDeadlineExceeded;
 constexpr TimePoint kNow(seconds(1000));
 constexpr int kFrames = 40;
@@ -72,17 +71,6 @@ TEST(DecideTest, EmptyQueueNeedsNoBatch) {
   EXPECT_EQ(decision.look_again, TimePoint::max());
 }
 
-TEST(DecideTest, TakesAllWaitingWindows) {
-  EXPECT_THAT(BatchOf(Waiting(5)), ElementsAre(0, 1, 2, 3, 4));
-}
-
-TEST(DecideTest, TakesAtMostAFullBatch) {
-  EXPECT_THAT(BatchOf(Waiting(5), 3), ElementsAre(0, 1, 2));
-  EXPECT_THAT(BatchOf(Waiting(5), 1), ElementsAre(0));
-}
-
-// Dropping.
-
 TEST(DecideTest, DropsWindowsThatCannotMeetTheirDeadlineWithAReason) {
   const Decision late = Decide(State({Due(milliseconds(14))}), {16}, kNow);
   EXPECT_THAT(late.batch, IsEmpty());
@@ -93,12 +81,6 @@ TEST(DecideTest, DropsWindowsThatCannotMeetTheirDeadlineWithAReason) {
   EXPECT_THAT(BatchOf(State({Due(milliseconds(16))})), ElementsAre(0));
 }
 
-TEST(DecideTest, ShortWindowNeedsLessTime) {
-  WaitingWindow window = Due(milliseconds(12));
-  window.frames = kFrames / 4;
-  EXPECT_THAT(BatchOf(State({window})), ElementsAre(0));
-}
-
 TEST(DecideTest, WithUnknownCostAWindowNeedsOnlyTimeForItsReply) {
   QueueState state = State({Due(milliseconds(1))});
   state.models[0].cost = {};
@@ -107,14 +89,110 @@ TEST(DecideTest, WithUnknownCostAWindowNeedsOnlyTimeForItsReply) {
   EXPECT_THAT(BatchOf(state), IsEmpty());
 }
 
-// Lanes.
+// One without a deadline whose result is wanted so long after now.
+WaitingWindow WantedIn(milliseconds left) {
+  WaitingWindow window = Window();
+  window.due = kNow + left;
+  return window;
+}
 
-TEST(DecideTest, ShortCallsPrecedeLongOnesAndThosePrecedeBulk) {
-  const WaitingWindow bulk = Window(Lane::kBulk), long_call = Window(Lane::kLong),
-                      short_call = Window(Lane::kShort);
-  EXPECT_THAT(BatchOf(State({bulk, long_call, short_call})), ElementsAre(2));
-  EXPECT_THAT(BatchOf(State({bulk, long_call})), ElementsAre(1));
-  EXPECT_THAT(BatchOf(State({bulk})), ElementsAre(0));
+// One of another client, which has had so many turns.
+WaitingWindow Of(std::size_t client, std::int64_t turns = 0, int frames = kFrames) {
+  WaitingWindow window = Window();
+  window.client = client;
+  window.client_turns = turns;
+  window.frames = frames;
+  return window;
+}
+WaitingWindow Waited(milliseconds time, milliseconds deadline) {
+  WaitingWindow window = Window();
+  window.queued_at = kNow - time;
+  window.deadline = window.queued_at + deadline;
+  return window;
+}
+WaitingWindow Both(milliseconds deadline, milliseconds due) {
+  WaitingWindow window = Due(deadline);
+  window.due = kNow + due;
+  return window;
+}
+
+TEST(DecideTest, ChoosesAndOrdersWindows) {
+  constexpr milliseconds kLater(100000);
+  const WaitingWindow short_call = Window(), long_call = Window(Lane::kLong),
+                      bulk = Window(Lane::kBulk), other_model = Window(Lane::kShort, 1);
+  const WaitingWindow candidates = Of(0, 0, 3 * kFrames), heavy = Of(0, 0, 6 * kFrames);
+  WaitingWindow quick = Due(milliseconds(12));
+  quick.frames = kFrames / 4;
+  const struct {
+    const char* what;
+    std::vector<WaitingWindow> windows;
+    std::vector<std::size_t> batch;
+    int max_windows = 16;
+    std::vector<double> served_seconds = {0, 0};  // of each model
+  } cases[] = {
+      {"all that wait", {5, short_call}, {0, 1, 2, 3, 4}},
+      {"at most a full batch", {5, short_call}, {0, 1, 2}, 3},
+      {"a short window needs less time", {quick}, {0}},
+      {"short calls before long ones", {bulk, long_call, short_call}, {2}},
+      {"long calls before bulk", {bulk, long_call}, {1}},
+      {"windows of one model", {short_call, other_model, short_call}, {0, 2}},
+      {"the model that was served least", {short_call, other_model}, {1}, 16, {2, 1}},
+      {"the other way round", {short_call, other_model}, {0}, 16, {2, 3}},
+      {"lanes before models", {bulk, other_model}, {1}, 16, {0, 5}},
+      {"the nearest deadline",
+       {Due(milliseconds(500)), Due(milliseconds(300)), Due(milliseconds(400))},
+       {1, 2},
+       2},
+      {"no deadline is like one a second after arrival",
+       {short_call, Waited(milliseconds(100), milliseconds(999))},
+       {1},
+       1},
+      {"and not like a later one",
+       {short_call, Waited(milliseconds(100), milliseconds(1001))},
+       {0},
+       1},
+      {"due soonest",
+       {short_call, WantedIn(milliseconds(33)), WantedIn(milliseconds(20))},
+       {2, 1},
+       2},
+      {"but after one that has waited for a second",
+       {WantedIn(milliseconds(1)), Waited(seconds(1), kLater)},
+       {1},
+       1},
+      {"the deadline, if it is before the due time",
+       {WantedIn(milliseconds(400)), Both(milliseconds(300), milliseconds(500))},
+       {1},
+       1},
+      {"otherwise the due time",
+       {WantedIn(milliseconds(400)), Both(kLater, milliseconds(500))},
+       {0},
+       1},
+      {"clients take turns", {Of(0), Of(0), Of(0), Of(0), Of(1), Of(1)}, {0, 4, 1}, 3},
+      {"three of them", {Of(0), Of(0), Of(0), Of(0), Of(1), Of(2)}, {0, 4, 5}, 3},
+      {"the client that had fewer turns first",
+       {Of(0, 17), Of(0, 17), Of(1, 16), Of(1, 16)},
+       {2, 0, 3, 1}},
+      // Client 0 has had 3 turns after window 0, and 4 after window 1.
+      {"a window takes as many turns as candidates",
+       {candidates, Of(0), Of(1), Of(1), Of(1), Of(1)},
+       {2, 3, 0, 4, 1, 5}},
+      {"a short window takes a whole turn",
+       {Of(0, 0, kFrames / 10), Of(0, 0, kFrames / 10), Of(0, 0, kFrames / 10), Of(1)},
+       {0, 3, 1, 2}},
+      {"candidates fill a batch", {4, heavy}, {0, 1}, 16},
+      {"and a larger one", {4, heavy}, {0, 1, 2}, 18},
+      {"more than a batch runs alone", {4, heavy}, {0}, 2},
+      {"candidates do not join another client's window",
+       {Of(0, 0, 16 * kFrames), Of(0, 0, 16 * kFrames), Of(1)},
+       {2}},
+  };
+  for (const auto& one : cases) {
+    QueueState state = State(one.windows, 2);
+    for (const std::size_t model : {0, 1}) {
+      state.models[model].served_seconds = one.served_seconds[model];
+    }
+    EXPECT_EQ(BatchOf(state, one.max_windows), one.batch) << one.what;
+  }
 }
 
 TEST(DecideTest, LowerLaneRunsAfterSevenTimesItsFrames) {
@@ -126,71 +204,6 @@ TEST(DecideTest, LowerLaneRunsAfterSevenTimesItsFrames) {
     overtaken = 7 * 2 * kFrames;
     EXPECT_THAT(BatchOf(state), ElementsAre(1, 2));
   }
-}
-
-// Models.
-
-TEST(DecideTest, BatchHoldsWindowsOfOneModel) {
-  EXPECT_THAT(BatchOf(State(
-                  {Window(Lane::kShort, 0), Window(Lane::kShort, 1), Window(Lane::kShort, 0)}, 2)),
-              ElementsAre(0, 2));
-}
-
-TEST(DecideTest, LeastServedModelRunsFirst) {
-  QueueState state = State({Window(Lane::kShort, 0), Window(Lane::kShort, 1)}, 2);
-  state.models[0].served_seconds = 2;
-  state.models[1].served_seconds = 1;
-  EXPECT_THAT(BatchOf(state), ElementsAre(1));
-  state.models[1].served_seconds = 3;
-  EXPECT_THAT(BatchOf(state), ElementsAre(0));
-}
-
-TEST(DecideTest, LanesTakePrecedenceOverModels) {
-  QueueState state = State({Window(Lane::kBulk, 0), Window(Lane::kShort, 1)}, 2);
-  state.models[1].served_seconds = 5;
-  EXPECT_THAT(BatchOf(state), ElementsAre(1));
-}
-
-// Deadlines.
-
-TEST(DecideTest, NearestDeadlineRunsFirst) {
-  EXPECT_THAT(
-      BatchOf(State({Due(milliseconds(500)), Due(milliseconds(300)), Due(milliseconds(400))}), 2),
-      ElementsAre(1, 2));
-}
-
-TEST(DecideTest, WindowWithoutADeadlineIsDueOneSecondAfterArrival) {
-  WaitingWindow other = Window();
-  other.deadline = other.queued_at + milliseconds(999);
-  EXPECT_THAT(BatchOf(State({Window(), other}), 1), ElementsAre(1));
-  other.deadline = other.queued_at + milliseconds(1001);
-  EXPECT_THAT(BatchOf(State({Window(), other}), 1), ElementsAre(0));
-}
-
-// One without a deadline whose result is wanted so long after now.
-WaitingWindow WantedIn(milliseconds left) {
-  WaitingWindow window = Window();
-  window.due = kNow + left;
-  return window;
-}
-
-TEST(DecideTest, WindowThatIsDueSoonestRunsFirst) {
-  EXPECT_THAT(BatchOf(State({Window(), WantedIn(milliseconds(33)), WantedIn(milliseconds(20))}), 2),
-              ElementsAre(2, 1));
-}
-
-TEST(DecideTest, DueWindowsDoNotStarveOnesThatWaitedASecond) {
-  WaitingWindow old = Window();
-  old.queued_at = kNow - seconds(1);
-  EXPECT_THAT(BatchOf(State({WantedIn(milliseconds(1)), old}), 1), ElementsAre(1));
-}
-
-TEST(DecideTest, TheEarlierOfDeadlineAndDueTimeCounts) {
-  WaitingWindow both = Due(milliseconds(300));
-  both.due = kNow + milliseconds(500);
-  EXPECT_THAT(BatchOf(State({WantedIn(milliseconds(400)), both}), 1), ElementsAre(1));
-  both.deadline = kNow + seconds(10);
-  EXPECT_THAT(BatchOf(State({WantedIn(milliseconds(400)), both}), 1), ElementsAre(0));
 }
 
 TEST(DecideTest, WindowThatMissesItsDueTimeIsStillEvaluated) {
@@ -237,8 +250,6 @@ TEST(DecideTest, OthersRunInASmallerBatchIfALargeOneIsTooLate) {
   EXPECT_THAT(BatchOf(State(windows)), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
 }
 
-// Lower lanes.
-
 TEST(DecideTest, LowerLaneBatchesAreShortWhileShortCallsArrive) {
   for (const Lane lane : {Lane::kLong, Lane::kBulk}) {
     QueueState state = State(std::vector<WaitingWindow>(16, Window(lane)));
@@ -251,15 +262,10 @@ TEST(DecideTest, LowerLaneBatchesAreShortWhileShortCallsArrive) {
     state.last_short = kNow - seconds(1);
     EXPECT_EQ(BatchOf(state).size(), 14u) << "as many frames as 16 windows have";
   }
-}
-
-TEST(DecideTest, ShortCallBatchesUseTheFullSize) {
   QueueState state = Waiting(16);
   state.last_short = kNow;
-  EXPECT_EQ(BatchOf(state).size(), 16u);
+  EXPECT_EQ(BatchOf(state).size(), 16u) << "batches of short calls are not";
 }
-
-// Workers.
 
 TEST(DecideTest, FreeWorkersShareWaitingWindows) {
   QueueState state = Waiting(8);
@@ -267,6 +273,10 @@ TEST(DecideTest, FreeWorkersShareWaitingWindows) {
   EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
   state.free_workers = 4;
   EXPECT_THAT(BatchOf(state), ElementsAre(0, 1));
+  state = Waiting(5);
+  state.windows[4].frames = 4 * kFrames;
+  state.free_workers = 2;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3)) << "frames, not windows";
 }
 
 TEST(DecideTest, LeavesAShareForAWorkerThatIsSoonFree) {
@@ -288,8 +298,6 @@ TEST(DecideTest, WindowsOfOtherModelsOccupyOtherWorkers) {
   EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
 }
 
-// Delay.
-
 // Two windows that came 10 and 5 ms ago while another worker is busy.
 QueueState WithCompany() {
   QueueState state = Waiting(2);
@@ -309,13 +317,6 @@ TEST(DecideTest, WaitsForMoreWindowsWhileWorkersAreBusy) {
   EXPECT_THAT(Decide(WithCompany(), kPatient, kNow + milliseconds(40)).batch, ElementsAre(0, 1));
 }
 
-TEST(DecideTest, SingleCallOnAnIdleServerStartsImmediately) {
-  QueueState state = WithCompany();
-  state.windows.resize(1);
-  state.busy_until.clear();
-  EXPECT_THAT(Decide(state, {16, seconds(1)}, kNow).batch, ElementsAre(0));
-}
-
 TEST(DecideTest, WaitsForRecentClients) {
   QueueState state = WithCompany();
   state.busy_until.clear();
@@ -325,14 +326,17 @@ TEST(DecideTest, WaitsForRecentClients) {
   EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
 }
 
-TEST(DecideTest, AFullBatchDoesNotWait) {
-  EXPECT_THAT(Decide(WithCompany(), {2, milliseconds(50)}, kNow).batch, ElementsAre(0, 1));
-}
-
-TEST(DecideTest, DoesNotWaitWhileOtherWindowsWait) {
-  QueueState state = WithCompany();
-  state.windows.push_back(Window(Lane::kBulk));
-  EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
+TEST(DecideTest, StartsImmediatelyIfWaitingBringsNothing) {
+  QueueState alone = WithCompany(), with_others = WithCompany(), with_candidates = WithCompany();
+  alone.windows.resize(1);
+  alone.busy_until.clear();
+  EXPECT_THAT(Decide(alone, {16, seconds(1)}, kNow).batch, ElementsAre(0)) << "an idle server";
+  EXPECT_THAT(Decide(WithCompany(), {2, milliseconds(50)}, kNow).batch, ElementsAre(0, 1))
+      << "a full batch";
+  for (WaitingWindow& window : with_candidates.windows) window.frames = 8 * kFrames;
+  EXPECT_THAT(Decide(with_candidates, kPatient, kNow).batch, ElementsAre(0, 1)) << "likewise";
+  with_others.windows.push_back(Window(Lane::kBulk));
+  EXPECT_THAT(Decide(with_others, kPatient, kNow).batch, ElementsAre(0, 1)) << "another lane waits";
 }
 
 TEST(DecideTest, NeverWaitsPastADeadline) {
@@ -342,8 +346,6 @@ TEST(DecideTest, NeverWaitsPastADeadline) {
   // The two take 20 ms.
   EXPECT_EQ(Decide(state, kPatient, kNow).look_again, kNow + milliseconds(10));
 }
-
-// Any state.
 
 QueueState RandomState(std::mt19937& random) {
   const auto below = [&](int end) {
@@ -427,72 +429,6 @@ TEST(DecideTest, InvariantsHoldInRandomStates) {
   }
 }
 
-TEST(BatchDecisionTest, ClientsTakeTurns) {
-  std::vector<WaitingWindow> windows(6, Window());
-  for (const std::size_t i : {4, 5}) windows[i].client = 1;  // came last
-  BatchLimits limits;
-  limits.max_windows = 3;
-  EXPECT_THAT(Decide(State(windows), limits, kNow).batch, ElementsAre(0, 4, 1));
-  windows[5].client = 2;
-  EXPECT_THAT(Decide(State(windows), limits, kNow).batch, ElementsAre(0, 4, 5));
-}
-
-TEST(BatchDecisionTest, WindowWithCandidatesTakesAsManyTurns) {
-  std::vector<WaitingWindow> windows(6, Window());
-  windows[0].frames = 3 * kFrames;
-  for (const std::size_t i : {2, 3, 4, 5}) windows[i].client = 1;
-  // Client 0 has had 3 turns after window 0, and 4 after window 1.
-  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(2, 3, 0, 4, 1, 5));
-}
-
-TEST(BatchDecisionTest, ClientThatHadFewerTurnsRunsFirst) {
-  std::vector<WaitingWindow> windows(4, Window());
-  for (const std::size_t i : {0, 1}) windows[i].client_turns = 17;
-  for (const std::size_t i : {2, 3}) {
-    windows[i].client = 1;
-    windows[i].client_turns = 16;
-  }
-  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(2, 0, 3, 1));
-}
-
-TEST(BatchDecisionTest, ShortWindowTakesAWholeTurn) {
-  std::vector<WaitingWindow> windows(4, Window());
-  for (const std::size_t i : {0, 1, 2}) windows[i].frames = kFrames / 10;
-  windows[3].client = 1;
-  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(0, 3, 1, 2));
-}
-
-TEST(BatchDecisionTest, CandidatesFillABatch) {
-  std::vector<WaitingWindow> windows(4, Window());
-  for (WaitingWindow& window : windows) window.frames = 6 * kFrames;
-  EXPECT_THAT(BatchOf(State(windows), 16), ElementsAre(0, 1));
-  EXPECT_THAT(BatchOf(State(windows), 18), ElementsAre(0, 1, 2));
-  EXPECT_THAT(BatchOf(State(windows), 2), ElementsAre(0)) << "more than a batch, alone";
-}
-
-TEST(BatchDecisionTest, WindowWithCandidatesDoesNotJoinThatOfAnotherClient) {
-  std::vector<WaitingWindow> windows(3, Window());
-  for (const std::size_t i : {0, 1}) windows[i].frames = 16 * kFrames;
-  windows[2].client = 1;
-  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(2));
-}
-
-TEST(BatchDecisionTest, FreeWorkersShareFramesAndNotWindows) {
-  std::vector<WaitingWindow> windows(5, Window());
-  windows[4].frames = 4 * kFrames;
-  QueueState state = State(windows);
-  state.free_workers = 2;
-  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
-}
-
-TEST(BatchDecisionTest, LowerLaneRunsOneWindowWithManyCandidatesWhileShortCallsArrive) {
-  QueueState state = State(std::vector<WaitingWindow>(16, Window(Lane::kBulk)));
-  for (WaitingWindow& window : state.windows) window.frames = 4 * kFrames;
-  EXPECT_EQ(BatchOf(state).size(), 4u);
-  state.last_short = kNow;
-  EXPECT_EQ(BatchOf(state).size(), 1u);
-}
-
 // Two workers, one of which evaluates a heavy window, while two heavy ones wait and light ones have
 // come 400 ms ago.
 QueueState BesideHeavy() {
@@ -504,7 +440,7 @@ QueueState BesideHeavy() {
   return state;
 }
 
-TEST(BatchDecisionTest, HeavyWindowsLeaveAWorkerToLightOnes) {
+TEST(DecideTest, HeavyWindowsLeaveAWorkerToLightOnes) {
   QueueState state = BesideHeavy();
   const Decision decision = Decide(state, {16}, kNow);
   EXPECT_THAT(decision.batch, IsEmpty());
@@ -512,15 +448,12 @@ TEST(BatchDecisionTest, HeavyWindowsLeaveAWorkerToLightOnes) {
   EXPECT_EQ(decision.look_again, kNow + milliseconds(600));
   state.windows.push_back(Window(Lane::kBulk));
   EXPECT_THAT(BatchOf(state), ElementsAre(2));
-}
-
-TEST(BatchDecisionTest, HeavyWindowsTakeEveryWorkerWithoutLightOnes) {
-  QueueState state = BesideHeavy();
+  state = BesideHeavy();
   state.last_light = kNow - seconds(1);
-  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1));
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1)) << "no light ones come";
 }
 
-TEST(BatchDecisionTest, HeavyWindowsDoNotDelayLightOnesInTheSameBatch) {
+TEST(DecideTest, HeavyWindowsDoNotDelayLightOnesInTheSameBatch) {
   std::vector<WaitingWindow> windows(5, Window());
   for (const std::size_t i : {1, 3}) windows[i].frames = 4 * kFrames;
   EXPECT_THAT(BatchOf(State(windows)), ElementsAre(0, 2, 4));
@@ -528,11 +461,68 @@ TEST(BatchDecisionTest, HeavyWindowsDoNotDelayLightOnesInTheSameBatch) {
   EXPECT_THAT(BatchOf(State(windows)), ElementsAre(1, 3)) << "the most urgent one determines it";
 }
 
-TEST(BatchDecisionTest, ABatchOfCandidatesIsFullAndDoesNotWait) {
-  QueueState state = WithCompany();
-  EXPECT_THAT(Decide(state, kPatient, kNow).batch, IsEmpty());
-  for (WaitingWindow& window : state.windows) window.frames = 8 * kFrames;
-  EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
+TEST(BatchCostTest, IsProportionalToFramesUntilSeveralSizesAreSeen) {
+  BatchCost cost;
+  for (int i = 0; i < 3; ++i) cost.Observe(40, 0.02, kNow);
+  EXPECT_NEAR(cost.At(kNow).batch_seconds, 0, 1e-9);
+  EXPECT_NEAR(cost.At(kNow).frame_seconds, 0.0005, 1e-9);
+}
+
+// What a model costs that takes 4 ms for a batch and 1 ms for each frame.
+double TrueSeconds(int frames) { return 0.004 + 0.001 * frames; }
+
+TEST(BatchCostTest, SeparatesBatchCostFromFrameCostBySeveralSizes) {
+  BatchCost cost;
+  for (int i = 0; i < 20; ++i) {
+    const int frames = 10 + 30 * (i % 5);
+    cost.Observe(frames, TrueSeconds(frames), kNow);
+  }
+  EXPECT_NEAR(cost.At(kNow).batch_seconds, 0.004, 0.001);
+  for (const int frames : {10, 46, 130}) {
+    EXPECT_NEAR(cost.At(kNow).Seconds(frames), TrueSeconds(frames), 0.05 * TrueSeconds(frames));
+  }
+}
+
+TEST(BatchCostTest, FollowsAModelThatBecomesSlower) {
+  BatchCost cost;
+  for (int i = 0; i < 20; ++i) cost.Observe(40, 0.02, kNow);
+  for (int i = 0; i < 20; ++i) cost.Observe(40, 0.06, kNow);
+  EXPECT_NEAR(cost.At(kNow).Seconds(40), 0.06, 0.002);
+}
+
+TEST(BatchCostTest, OutlierCountsAtMostFourTimesTheEstimate) {
+  BatchCost cost;
+  for (int i = 0; i < 20; ++i) cost.Observe(40, 0.02, kNow);
+  BatchCost paused = cost, slow = cost;
+  paused.Observe(40, 10, kNow);
+  slow.Observe(40, 4 * 0.02, kNow);
+  EXPECT_NEAR(paused.At(kNow).Seconds(40), slow.At(kNow).Seconds(40), 1e-9);
+  EXPECT_GT(paused.At(kNow).Seconds(40), 0.025);
+}
+
+TEST(BatchCostTest, NeitherPartIsEverNegative) {
+  BatchCost falling, steep;
+  for (int i = 0; i < 5; ++i) {
+    falling.Observe(10, 0.02, kNow);
+    falling.Observe(100, 0.01, kNow);
+    steep.Observe(10, 0.001, kNow);
+    steep.Observe(100, 0.1, kNow);
+  }
+  EXPECT_EQ(falling.At(kNow).frame_seconds, 0);
+  EXPECT_GT(falling.At(kNow).batch_seconds, 0);
+  EXPECT_NEAR(steep.At(kNow).batch_seconds, 0, 1e-9);
+  EXPECT_GT(steep.At(kNow).frame_seconds, 0);
+}
+
+TEST(BatchCostTest, HalvesEachSecondWithoutABatch) {
+  BatchCost cost;
+  cost.Observe(40, 0.02, kNow);
+  EXPECT_NEAR(cost.At(kNow).Seconds(40), 0.02, 1e-9);
+  EXPECT_NEAR(cost.At(kNow + seconds(1)).Seconds(40), 0.01, 1e-9);
+  EXPECT_NEAR(cost.At(kNow + seconds(3)).Seconds(40), 0.0025, 1e-9);
+  EXPECT_NEAR(cost.At(kNow - milliseconds(5)).Seconds(40), 0.02, 1e-9);
+  cost.Observe(40, 0.02, kNow + seconds(3));
+  EXPECT_NEAR(cost.At(kNow + seconds(3)).Seconds(40), 0.02, 1e-9);
 }
 
 }  // namespace

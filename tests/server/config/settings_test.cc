@@ -1,172 +1,278 @@
+// docs/settings.md lists every setting. With DUET_WRITE_DOCUMENTS set, a test here writes it.
 #include "server/config/settings.h"
 
 #include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <limits>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "model/base/file.h"
+#include "server/config/container_limits.h"
 #include "server/config/load_config.h"
-#include "tests/server/support/settings.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
 
-using test::ParseConfigText;
-using test::ResolveSettings;
-
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
+
+// Fills in the defaults of `given`. Fails with every mistake.
+absl::StatusOr<v1::ServerConfig> ResolveSettings(const v1::ServerConfig& given, int cores,
+                                                 const SettingSources& sources = {},
+                                                 std::uint64_t memory_bytes = kUnlimitedMemory) {
+  CommandLine line;
+  line.config = given;
+  line.sources = sources;
+  return ResolveSettings(line, cores, memory_bytes);
+}
+
+v1::ServerConfig Given(const std::string& text) {
+  v1::ServerConfig config;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &config)) << text;
+  return config;
+}
+
+// A value that the flag of a setting accepts.
+std::string SampleValue(const Setting& setting) {
+  if (setting.name() == "version_labels") return "sbu:stable=3";
+  switch (setting.field().cpp_type()) {
+    case Setting::Field::CPPTYPE_ENUM:
+      return ChoicesOf(*setting.field().enum_type()).front().flag_value;
+    case Setting::Field::CPPTYPE_BOOL:
+      return "true";
+    default:
+      return "1";
+  }
+}
+
+// Whether the message has the field, and no other one.
+bool HasOnly(const v1::ServerConfig& config, const Setting& setting) {
+  std::vector<const Setting::Field*> fields;
+  config.GetReflection()->ListFields(config, &fields);
+  return fields.size() == 1 && fields[0] == &setting.field();
+}
+
+CommandLine Parse(const std::vector<std::string>& arguments, const Environment& environment) {
+  std::vector<const char*> argv = {"duet-server"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  return ParseCommandLine(static_cast<int>(argv.size()), argv.data(), environment);
+}
+
+TEST(EverySettingTest, HasHelpAUnitAndANumberARange) {
+  std::set<std::string> flags;
+  for (const Setting& setting : AllSettings()) {
+    EXPECT_FALSE(setting.options().help().empty()) << setting.name();
+    EXPECT_FALSE(absl::EndsWith(setting.options().help(), ".")) << setting.name();
+    const auto type = setting.field().cpp_type();
+    EXPECT_EQ(!setting.unit().empty(), type != Setting::Field::CPPTYPE_BOOL) << setting.name();
+    const bool is_number = type == Setting::Field::CPPTYPE_UINT32 ||
+                           type == Setting::Field::CPPTYPE_UINT64 ||
+                           type == Setting::Field::CPPTYPE_DOUBLE;
+    EXPECT_EQ(!setting.range_text().empty(), is_number) << setting.name();
+    EXPECT_TRUE(flags.insert(setting.flag()).second) << setting.name();
+  }
+}
+
+TEST(EverySettingTest, DefaultIsValid) {
+  EXPECT_THAT(ReadSettings(v1::ServerConfig(), 4).mistakes, IsEmpty());
+  for (const Setting& setting : AllSettings()) {
+    if (setting.options().default_value().empty()) continue;
+    v1::ServerConfig config;
+    setting.SetDefault(&config);
+    EXPECT_TRUE(HasOnly(config, setting)) << setting.name();
+    EXPECT_THAT(ReadSettings(config, 4).mistakes, IsEmpty()) << setting.name();
+  }
+}
+
+TEST(EverySettingTest, HasAFlagAndAVariable) {
+  for (const Setting& setting : AllSettings()) {
+    const std::string value = SampleValue(setting);
+    const CommandLine flag = Parse({absl::StrCat("--", setting.flag(), "=", value)}, {});
+    EXPECT_THAT(flag.errors, IsEmpty()) << setting.name();
+    EXPECT_TRUE(HasOnly(flag.config, setting)) << setting.name();
+    const CommandLine variable = Parse({}, {{setting.variable(), value}});
+    EXPECT_THAT(variable.errors, IsEmpty()) << setting.name();
+    EXPECT_TRUE(HasOnly(variable.config, setting)) << setting.name();
+  }
+}
+
+TEST(EverySettingTest, ShowsInHelpWithItsDefault) {
+  const std::string help = Parse({"--help"}, {}).print.value_or("");
+  for (const Setting& setting : AllSettings()) {
+    EXPECT_THAT(help, HasSubstr(absl::StrCat("--", setting.flag())));
+    EXPECT_THAT(help, HasSubstr(setting.help()));
+  }
+}
+
+TEST(EverySettingTest, NumberOutOfRangeIsRejectedByName) {
+  for (const Setting& setting : AllSettings()) {
+    if (setting.range_text().empty() || !setting.options().range().has_max()) continue;
+    const double above = setting.options().range().max() + 1;
+    const CommandLine line =
+        Parse({absl::StrCat("--", setting.flag(), "=", static_cast<uint64_t>(above))}, {});
+    EXPECT_THAT(ReadSettings(line, 4).mistakes,
+                Contains(AllOf(StartsWith(absl::StrCat(setting.name(), ": expected ")),
+                               HasSubstr(" (command line)"))));
+  }
+}
+
+TEST(SettingTest, RangeNamesTheTypesLargestNumberAndAnExtraZero) {
+  EXPECT_EQ(Setting(v1::ServerConfig::kMemoryLimitBytesFieldNumber).range_text(),
+            "67108864 to 18446744073709551615");
+  EXPECT_EQ(Setting(v1::ServerConfig::kWatchdogSecondsFieldNumber).range_text(),
+            "0, or 1 to 86400");
+  EXPECT_EQ(Setting(v1::ServerConfig::kMaxHeldBytesFieldNumber).range_text(),
+            "max-request-bytes to 1099511627776");
+}
+
+TEST(SettingTest, HelpEndsWithTheDefault) {
+  EXPECT_THAT(Setting(v1::ServerConfig::kMaxCallsFieldNumber).help(), EndsWith(" (default 128)"));
+  EXPECT_THAT(Setting(v1::ServerConfig::kReflectionFieldNumber).help(), EndsWith(" (default on)"));
+  EXPECT_THAT(Setting(v1::ServerConfig::kWorkersFieldNumber).help(),
+              HasSubstr(" (default: one for each core"));
+  EXPECT_THAT(Setting(v1::ServerConfig::kTlsKeyFileFieldNumber).help(), Not(HasSubstr("default")));
+}
+
+constexpr char kIntroduction[] = R"(# Settings of duet-server
+
+This page is generated from the options of [server_config.proto](../proto/duet/v1/server_config.proto), which
+also has the details of each setting. To write it again:
+`DUET_WRITE_DOCUMENTS=1 ctest --preset release -R '^server_config_test$'`.
+
+Every setting is a flag, an environment variable (`DUET_SERVER_` and the flag's name, such as
+`DUET_SERVER_MAX_CALLS` for `--max-calls`) and a field of the configuration file (`max_calls`). Flags override
+variables, variables override the file. `duet-server --print-config` prints every value and its source.
+
+| flag | value | default | range | what |
+|---|---|---|---|---|
+)";
+
+std::string Cell(const std::string& text) {
+  return absl::StrReplaceAll(text, {{"|", "\\|"}, {"<", "&lt;"}, {"*", "\\*"}});
+}
+
+std::string Document() {
+  std::string text = kIntroduction;
+  for (const Setting& setting : AllSettings()) {
+    const bool is_value = !setting.options().default_value().empty();
+    const std::string quote = is_value ? "`" : "";
+    absl::StrAppend(&text, "| `--", setting.flag(), "` | ", Cell(setting.unit()), " | ", quote,
+                    is_value ? setting.default_text() : Cell(setting.default_text()), quote, " | ",
+                    setting.range_text(), " | ", Cell(setting.options().help()), " |\n");
+  }
+  return text;
+}
+
+TEST(SettingsDocumentTest, AgreesWithTheSchema) {
+  const char* const source = std::getenv("DUET_SOURCE_DIR");
+  ASSERT_NE(source, nullptr) << "set by ctest";
+  const std::filesystem::path path = std::filesystem::path(source) / "docs" / "settings.md";
+  if (std::getenv("DUET_WRITE_DOCUMENTS") != nullptr) std::ofstream(path) << Document();
+  const absl::StatusOr<std::string> written =
+      base::ReadFile(path, std::size_t{1} << 20, "a document");
+  ASSERT_THAT(written, IsOk());
+  EXPECT_EQ(*written, Document()) << "see the top of docs/settings.md";
+}
 
 TEST(SettingsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
-  const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(v1::ServerConfig(), 4);
-  ASSERT_THAT(options, IsOk());
-  EXPECT_EQ(options->listen(), "0.0.0.0:50051");
-  EXPECT_EQ(options->metrics_listen(), "0.0.0.0:9464");
-  EXPECT_TRUE(options->model_repository().empty());
-  EXPECT_EQ(options->admin_listen(), "off");
-  EXPECT_EQ(options->clean_up(), v1::CLEAN_UP_POLICY_AUTO);
-  EXPECT_EQ(options->models(), v1::SERVED_MODELS_ALL);
-  EXPECT_TRUE(options->reflection());
-  EXPECT_EQ(options->workers(), 4);
-  EXPECT_EQ(options->threads_per_worker(), 1);
-  EXPECT_EQ(options->engine(), v1::ENGINE_CPU);
-  EXPECT_EQ(options->precision(), v1::PRECISION_AUTO);
-  EXPECT_EQ(options->max_request_bytes(), 32u << 20);
-  EXPECT_EQ(options->max_transport_bytes(), 512u << 20);
-  EXPECT_EQ(options->drain_seconds(), 0);
-  EXPECT_EQ(options->grace_seconds(), 30);
-  EXPECT_EQ(options->max_batch_windows(), 16);
-  EXPECT_EQ(options->max_batch_delay_seconds(), 0);
-  EXPECT_EQ(options->watchdog_seconds(), 120);
-  EXPECT_EQ(options->log_level(), v1::LOG_LEVEL_INFO);
-  EXPECT_TRUE(options->tls_certificate_file().empty());
-  EXPECT_TRUE(options->access_file().empty());
+  const absl::StatusOr<v1::ServerConfig> settings = ResolveSettings(v1::ServerConfig(), 4);
+  ASSERT_THAT(settings, IsOk());
+  EXPECT_EQ(settings->listen(), "0.0.0.0:50051");
+  EXPECT_EQ(settings->metrics_listen(), "0.0.0.0:9464");
+  EXPECT_TRUE(settings->model_repository().empty());
+  EXPECT_EQ(settings->admin_listen(), "off");
+  EXPECT_EQ(settings->workers(), 4);
+  EXPECT_EQ(settings->threads_per_worker(), 1);
 }
 
 TEST(SettingsTest, ValidValuesStayAsGiven) {
-  const absl::StatusOr<v1::ServerConfig> given = ParseConfigText(
+  const v1::ServerConfig given = Given(
       R"(listen: "[::1]:1" metrics_listen: "off" model_repository: "/models" default_model: "sbu"
          version_labels { model: "sbu" label: "stable" version: 3 }
          tls_certificate_file: "/c" tls_key_file: "/k" tls_client_ca_file: "/a" access_file: "/l"
-         log_level: LOG_LEVEL_ERROR log_refusals_per_second: 3
-         admin_listen: "0.0.0.0:7" reflection: false engine: ENGINE_TORCH precision: PRECISION_F32
-         workers: 2 threads_per_worker: 3 max_calls: 5 max_queued_windows: 6 max_batch_windows: 8
-         max_batch_delay_seconds: 0.25 max_request_bytes: 4096 max_transport_bytes: 10000
-         buffered_frames: 7 drain_seconds: 8.5 grace_seconds: 9 clean_up: CLEAN_UP_POLICY_OFF
-         models: SERVED_MODELS_FREE)",
-      /*json=*/false);
-  ASSERT_THAT(given, IsOk());
-  const absl::StatusOr<v1::ServerConfig> settings = ResolveSettings(*given, 4);
+         log_level: LOG_LEVEL_ERROR reflection: false engine: ENGINE_TORCH
+         workers: 2 threads_per_worker: 3 max_calls: 5 max_batch_delay_seconds: 0.25
+         max_request_bytes: 4096 max_transport_bytes: 10000 clean_up: CLEAN_UP_POLICY_OFF)");
+  const absl::StatusOr<v1::ServerConfig> settings = ResolveSettings(given, 4);
   ASSERT_THAT(settings, IsOk());
   google::protobuf::util::MessageDifferencer differencer;
   differencer.set_scope(google::protobuf::util::MessageDifferencer::PARTIAL);
-  EXPECT_TRUE(differencer.Compare(*given, *settings)) << settings->DebugString();
+  EXPECT_TRUE(differencer.Compare(given, *settings)) << settings->DebugString();
 }
 
 TEST(SettingsTest, AddressesGetTheirNormalForm) {
-  v1::ServerConfig config;
-  config.set_listen(":7");
-  config.set_metrics_listen("");
-  const absl::StatusOr<v1::ServerConfig> settings = ResolveSettings(config, 4);
+  const auto settings = ResolveSettings(Given("listen: ':7' metrics_listen: ''"), 4);
   ASSERT_THAT(settings, IsOk());
   EXPECT_EQ(settings->listen(), "0.0.0.0:7");
   EXPECT_EQ(settings->metrics_listen(), "off");
-  EXPECT_EQ(settings->admin_listen(), "off");
 }
 
 TEST(SettingsTest, DefaultWorkersTimesThreadsEqualTheCores) {
-  v1::ServerConfig config;
-  config.set_engine(v1::ENGINE_TORCH);
-  config.set_threads_per_worker(2);
-  EXPECT_EQ(ResolveSettings(config, 7)->workers(), 3);
-  EXPECT_EQ(ResolveSettings(config, 1)->workers(), 1);
-  config.clear_threads_per_worker();
-  config.set_workers(2);
-  EXPECT_EQ(ResolveSettings(config, 7)->threads_per_worker(), 3);
-  EXPECT_EQ(ResolveSettings(config, 1)->threads_per_worker(), 1);
+  const auto with_threads = Given("engine: ENGINE_TORCH threads_per_worker: 2");
+  EXPECT_EQ(ResolveSettings(with_threads, 7)->workers(), 3);
+  EXPECT_EQ(ResolveSettings(with_threads, 1)->workers(), 1);
+  const auto with_workers = Given("engine: ENGINE_TORCH workers: 2");
+  EXPECT_EQ(ResolveSettings(with_workers, 7)->threads_per_worker(), 3);
+  EXPECT_EQ(ResolveSettings(with_workers, 1)->threads_per_worker(), 1);
+  EXPECT_EQ(ResolveSettings(Given("workers: 2"), 7)->threads_per_worker(), 1)
+      << "an evaluation of the cpu engine has one thread";
 }
 
-TEST(SettingsTest, CpuEngineUsesOneThreadPerWorker) {
-  v1::ServerConfig config;
-  config.set_workers(2);
-  EXPECT_EQ(ResolveSettings(config, 7)->threads_per_worker(), 1);
-  config.set_threads_per_worker(1);
-  EXPECT_THAT(ResolveSettings(config, 7), IsOk());
+TEST(SettingsTest, MistakesNameTheFieldWhatIsExpectedAndWhatWasGiven) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"listen: '50051'", "listen: expected host:port"},
+      {"metrics_listen: 'a:b'", "metrics_listen: expected host:port"},
+      {"admin_listen: 'b'", "admin_listen: expected host:port"},
+      {"workers: 0", "workers: expected 1 to 1024, got 0"},
+      {"workers: 129", "workers: expected 1 to 32 on 4 cores, got 129"},
+      {"engine: ENGINE_TORCH workers: 2 threads_per_worker: 1024",
+       "threads_per_worker: expected 1 to 16 with 2 workers, got 1024; together they may have 32 "
+       "threads on 4 cores"},
+      {"threads_per_worker: 3", "threads_per_worker: expected 1 with ENGINE_CPU, got 3; its"},
+      {"engine: ENGINE_UNSPECIFIED", "engine: expected ENGINE_CPU or ENGINE_TORCH, got 0"},
+      {"precision: 9",
+       "precision: expected PRECISION_AUTO, PRECISION_F32, PRECISION_BF16 or PRECISION_INT16, got "
+       "9"},
+      {"engine: ENGINE_TORCH precision: PRECISION_BF16",
+       "precision: expected PRECISION_F32 with ENGINE_TORCH, got PRECISION_BF16"},
+      {"watchdog_seconds: 0.5", "watchdog_seconds: expected 0, or 1 to 86400, got 0.5"},
+      {"max_request_bytes: 4294967296",
+       "max_request_bytes: expected 1024 to 536870912, got 4294967296"},
+      {"max_transport_bytes: 67108863",
+       "max_transport_bytes: expected 67108864 to 1099511627776, got 67108863"},
+      {"memory_limit_bytes: 1000",
+       "memory_limit_bytes: expected 67108864 to 18446744073709551615, got 1000"},
+      {"grace_seconds: nan", "grace_seconds: expected 0 to 3600, got nan"},
+      {"tls_certificate_file: '/c'",
+       "tls_key_file: expected a file beside tls_certificate_file, got none"},
+      {"tls_key_file: '/k'", "tls_certificate_file: expected a file beside tls_key_file, got none"},
+      {"tls_client_ca_file: '/a'", "tls_client_ca_file: expected tls_certificate_file"},
+      {"version_labels {}", "version_labels[0]: expected a model, a label"},
+      {"client_key: 'X-Client'", "client_key: expected lower-case letters"},
+      {"client_key: 'x:client'", "client_key: expected lower-case letters"},
+      {"client_key: 'client-bin'", "client_key: expected lower-case letters"}};
+  for (const auto& [text, mistake] : cases) {
+    EXPECT_THAT(ResolveSettings(Given(text), 4), StatusIs(kInvalidArgument, HasSubstr(mistake)));
+  }
+  EXPECT_THAT(ResolveSettings(Given("client_key: 'x-client_1.a' workers: 32"), 4), IsOk());
 }
 
-struct BadConfig {
-  std::string message;
-  std::function<void(v1::ServerConfig&)> spoil;
-};
-
-class BadConfigTest : public ::testing::TestWithParam<BadConfig> {};
-
-TEST_P(BadConfigTest, IsRefusedByName) {
-  v1::ServerConfig config;
-  GetParam().spoil(config);
-  EXPECT_THAT(ResolveSettings(config, 4),
-              StatusIs(kInvalidArgument, HasSubstr(GetParam().message)));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Every, BadConfigTest,
-    ::testing::Values(
-        BadConfig{"listen: expected host:port", [](v1::ServerConfig& c) { c.set_listen("50051"); }},
-        BadConfig{"metrics_listen: expected host:port",
-                  [](v1::ServerConfig& c) { c.set_metrics_listen("a:b"); }},
-        BadConfig{"workers: expected 1 to 1024, got 0",
-                  [](v1::ServerConfig& c) { c.set_workers(0); }},
-        BadConfig{"threads_per_worker: expected 1 with ENGINE_CPU, got 3; its",
-                  [](v1::ServerConfig& c) { c.set_threads_per_worker(3); }},
-        BadConfig{"engine: expected ENGINE_CPU or ENGINE_TORCH, got 0",
-                  [](v1::ServerConfig& c) { c.set_engine(v1::ENGINE_UNSPECIFIED); }},
-        BadConfig{"precision: expected PRECISION_AUTO, PRECISION_F32, PRECISION_BF16 or "
-                  "PRECISION_INT16, got 9",
-                  [](v1::ServerConfig& c) { c.set_precision(static_cast<v1::Precision>(9)); }},
-        BadConfig{"precision: expected PRECISION_F32 with ENGINE_TORCH, got PRECISION_BF16",
-                  [](v1::ServerConfig& c) {
-                    c.set_engine(v1::ENGINE_TORCH);
-                    c.set_precision(v1::PRECISION_BF16);
-                  }},
-        BadConfig{"watchdog_seconds: expected 0, or 1 to 86400, got 0.5",
-                  [](v1::ServerConfig& c) { c.set_watchdog_seconds(0.5); }},
-        BadConfig{"max_calls: expected 1 to 100000, got 0",
-                  [](v1::ServerConfig& c) { c.set_max_calls(0); }},
-        BadConfig{"max_request_bytes: expected 1024 to 536870912, got 4294967296",
-                  [](v1::ServerConfig& c) { c.set_max_request_bytes(uint64_t{1} << 32); }},
-        BadConfig{"max_transport_bytes: expected 67108864 to 1099511627776, got 67108863",
-                  [](v1::ServerConfig& c) { c.set_max_transport_bytes((64 << 20) - 1); }},
-        BadConfig{"grace_seconds: expected 0 to 3600, got nan",
-                  [](v1::ServerConfig& c) {
-                    c.set_grace_seconds(std::numeric_limits<double>::quiet_NaN());
-                  }},
-        BadConfig{"clean_up: expected CLEAN_UP_POLICY_AUTO",
-                  [](v1::ServerConfig& c) { c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED); }},
-        BadConfig{"clean_up: expected CLEAN_UP_POLICY_AUTO",
-                  [](v1::ServerConfig& c) { c.set_clean_up(static_cast<v1::CleanUpPolicy>(9)); }},
-        BadConfig{"models: expected SERVED_MODELS_ALL or SERVED_MODELS_FREE",
-                  [](v1::ServerConfig& c) { c.set_models(v1::SERVED_MODELS_UNSPECIFIED); }},
-        BadConfig{"admin_listen: expected host:port",
-                  [](v1::ServerConfig& c) { c.set_admin_listen("b"); }},
-        BadConfig{"tls_key_file: expected a file beside tls_certificate_file, got none",
-                  [](v1::ServerConfig& c) { c.set_tls_certificate_file("/c"); }},
-        BadConfig{"tls_certificate_file: expected a file beside tls_key_file, got none",
-                  [](v1::ServerConfig& c) { c.set_tls_key_file("/k"); }},
-        BadConfig{"tls_client_ca_file: expected tls_certificate_file",
-                  [](v1::ServerConfig& c) { c.set_tls_client_ca_file("/a"); }},
-        BadConfig{"version_labels[0]: expected a model, a label",
-                  [](v1::ServerConfig& c) { c.add_version_labels(); }}));
-
-TEST(SettingsTest, ReportsEveryMistake) {
-  v1::ServerConfig config;
-  config.set_listen("nowhere");
-  config.set_max_calls(0);
-  config.set_drain_seconds(-1);
-  EXPECT_THAT(ResolveSettings(config, 4, {{"max_calls", "file a:1:2"}}),
+TEST(SettingsTest, ReportsEveryMistakeWithItsSource) {
+  EXPECT_THAT(ResolveSettings(Given("listen: 'nowhere' max_calls: 0 drain_seconds: -1"), 4,
+                              {{"max_calls", "file a:1:2"}}),
               StatusIs(kInvalidArgument,
                        AllOf(HasSubstr("listen: "),
                              HasSubstr("\nmax_calls: expected 1 to 100000, got 0 (file a:1:2)\n"),
@@ -210,39 +316,80 @@ TEST(SettingsTest, RejectsListenersOnTheSamePort) {
                AllOf(HasSubstr("metrics_listen: expected another port than listen"),
                      HasSubstr("\nadmin_listen: expected another port than listen"),
                      HasSubstr("\nadmin_listen: expected another port than metrics_listen"))));
-  v1::ServerConfig only_grpc;
-  only_grpc.set_listen("0.0.0.0:9464");
-  EXPECT_THAT(ResolveSettings(only_grpc, 4),
+  EXPECT_THAT(ResolveSettings(Given("listen: '0.0.0.0:9464'"), 4),
               StatusIs(kInvalidArgument, HasSubstr("metrics_listen: ")))
       << "the default";
 }
 
-TEST(SettingsTest, RejectsAClientKeyThatMetadataCannotHold) {
-  v1::ServerConfig config;
-  config.set_client_key("x-client_1.a");
-  EXPECT_THAT(ResolveSettings(config, 4), IsOk());
-  for (const char* bad : {"X-Client", "x client", "x:client", "client-bin"}) {
-    config.set_client_key(bad);
-    EXPECT_THAT(ResolveSettings(config, 4),
-                StatusIs(kInvalidArgument, HasSubstr("client_key: expected")));
+v1::ServerConfig Planned(std::uint64_t mebibytes, const std::string& given = "", int cores = 2) {
+  const auto settings = ResolveSettings(Given(given), cores, {}, mebibytes * kMebibyte);
+  EXPECT_THAT(settings, IsOk());
+  return settings.ok() ? *settings : v1::ServerConfig();
+}
+
+std::vector<std::string> WarningsOf(const v1::ServerConfig& settings, std::uint64_t mebibytes) {
+  return MemoryWarnings(settings, mebibytes * kMebibyte);
+}
+
+TEST(MemoryPlanTest, DefaultsFitSmallContainersAndGrowWithThem) {
+  for (const int cores : {1, 2, 4}) {
+    v1::ServerConfig before = Planned(64, "", cores);
+    for (std::uint64_t memory = 160; memory < 5000; memory += memory < 500 ? 8 : 100) {
+      const v1::ServerConfig now = Planned(memory, "", cores);
+      EXPECT_LE(NeedOf(now).total(), memory * kMebibyte) << memory << " MiB, " << cores;
+      EXPECT_THAT(WarningsOf(now, memory), IsEmpty()) << memory;
+      EXPECT_GE(now.max_calls(), before.max_calls()) << memory;
+      EXPECT_GE(now.max_request_bytes(), before.max_request_bytes()) << memory;
+      EXPECT_GE(NeedOf(now).total(), NeedOf(before).total()) << memory;
+      before = now;
+    }
   }
 }
 
-TEST(SettingsTest, RejectsMoreThreadsThanTheCoresCanUse) {
-  v1::ServerConfig config;
-  config.set_workers(33);
-  EXPECT_THAT(ResolveSettings(config, 2),
-              StatusIs(kInvalidArgument, "workers: expected 1 to 32 on 2 cores, got 33"));
-  EXPECT_THAT(ResolveSettings(config, 9), IsOk());
-  config.set_engine(v1::ENGINE_TORCH);
-  config.set_workers(2);
-  config.set_threads_per_worker(1024);
-  EXPECT_THAT(ResolveSettings(config, 2),
-              StatusIs(kInvalidArgument,
-                       "threads_per_worker: expected 1 to 16 with 2 workers, got 1024; together "
-                       "they may have 32 threads on 2 cores"));
-  config.set_threads_per_worker(16);
-  EXPECT_THAT(ResolveSettings(config, 2), IsOk());
+TEST(MemoryPlanTest, LimitsDependOnTheMemory) {
+  const v1::ServerConfig ample = Planned(2048);
+  EXPECT_EQ(ample.max_calls(), 128);
+  EXPECT_EQ(ample.max_request_bytes(), 32 * kMebibyte);
+  EXPECT_EQ(ample.max_transport_bytes(), 512 * kMebibyte);
+  EXPECT_EQ(ample.max_held_bytes(), 512 * kMebibyte);
+  EXPECT_EQ(ample.max_slow_requests(), 8);
+  const v1::ServerConfig little = Planned(400);
+  EXPECT_EQ(little.max_calls(), 128) << "held bytes shrink before calls and requests";
+  EXPECT_EQ(little.max_request_bytes(), 32 * kMebibyte);
+  EXPECT_EQ(little.max_transport_bytes(), 96 * kMebibyte);
+  EXPECT_EQ(little.max_slow_requests(), 1);
+  EXPECT_LT(little.max_held_bytes(), 128 * kMebibyte);
+  EXPECT_GE(little.max_held_bytes(), 52000000u) << "two leaders of ten minutes at 240 Hz";
+  const v1::ServerConfig too_little = Planned(64);
+  EXPECT_EQ(too_little.max_calls(), 4);
+  EXPECT_EQ(too_little.max_request_bytes(), kMebibyte);
+  EXPECT_EQ(too_little.max_transport_bytes(), 3 * kMebibyte);
+  EXPECT_EQ(too_little.max_held_bytes(), kMebibyte);
+  EXPECT_THAT(WarningsOf(too_little, 64),
+              ElementsAre(AllOf(HasSubstr("the limit is 67 MB"), HasSubstr("max_calls = 4"))));
+}
+
+TEST(MemoryPlanTest, ExplicitSettingsAreKeptAndOthersShrink) {
+  const std::string held = absl::StrCat("max_held_bytes: ", 300 * kMebibyte);
+  EXPECT_EQ(Planned(800, held).max_held_bytes(), 300 * kMebibyte);
+  EXPECT_THAT(WarningsOf(Planned(800, held), 800), IsEmpty());
+  const v1::ServerConfig all =
+      Planned(400, held + " max_calls: 7 max_request_bytes: 5242880 max_transport_bytes: 11534336");
+  EXPECT_EQ(all.max_calls(), 7);
+  EXPECT_EQ(all.max_request_bytes(), 5 * kMebibyte);
+  EXPECT_EQ(all.max_transport_bytes(), 11 * kMebibyte);
+  EXPECT_EQ(all.max_held_bytes(), 300 * kMebibyte);
+}
+
+TEST(MemoryPlanTest, WarnsAboutExplicitSettingsThatDoNotFit) {
+  EXPECT_THAT(
+      WarningsOf(Planned(400, "max_held_bytes: 536870912 max_transport_bytes: 536870912"), 400),
+      ElementsAre(AllOf(HasSubstr("the limit is 419 MB"), HasSubstr("536 MB for max_held_bytes"),
+                        HasSubstr("536 MB for max_transport_bytes"))));
+  EXPECT_THAT(
+      WarningsOf(Planned(400, absl::StrCat("memory_limit_bytes: ", 4000 * kMebibyte)), 400),
+      ElementsAre(AllOf(HasSubstr("got 4194304000"), HasSubstr("expected at most 419430400")),
+                  HasSubstr("the limit is 419 MB")));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
@@ -74,19 +75,6 @@ TEST(StreamLogSinkTest, LinesOfManyThreadsStayWhole) {
   for (std::size_t line = 0; line < text.size(); line += 301) {
     EXPECT_EQ(text.substr(line, 301), std::string(300, text[line]) + "\n");
   }
-}
-
-TEST(StreamLogSinkTest, CountsALineThatDoesNotFit) {
-  Disk disk(4);
-  StreamLogSink sink(disk.stream());
-  EXPECT_TRUE(sink.Write("one"));
-  EXPECT_FALSE(sink.Write("two"));
-  EXPECT_FALSE(sink.Write("three"));
-  EXPECT_EQ(sink.dropped_lines(), 2u);
-  disk.MakeRoom(100);
-  EXPECT_TRUE(sink.Write("four"));
-  EXPECT_EQ(disk.text(), "one\nfour\n") << "nothing of what was lost comes later";
-  EXPECT_EQ(sink.dropped_lines(), 2u);
 }
 
 TEST(StreamLogSinkTest, StartsANewLineAfterAPartlyWrittenOne) {
@@ -160,24 +148,15 @@ QueuedLogSink::Options Options(std::size_t capacity) {
   return options;
 }
 
-TEST(QueuedLogSinkTest, WriteDoesNotBlockOnAStuckSink) {
-  const auto sink = std::make_shared<PuppetSink>();
-  QueuedLogSink log(sink, Options(2));
-  log.Write("stuck");
-  sink->WaitUntilBegun(1);
-  for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);  // returns each time
-  EXPECT_EQ(log.dropped_lines(), 2u);
-  EXPECT_THAT(sink->lines(), IsEmpty());
-  sink->Open();
-}
-
-TEST(QueuedLogSinkTest, ReportsDroppedLinesWhenTheSinkRecovers) {
+TEST(QueuedLogSinkTest, WriteDoesNotBlockOnAStuckSinkAndDroppedLinesAreReported) {
   const auto sink = std::make_shared<PuppetSink>();
   {
     QueuedLogSink log(sink, Options(2));
     log.Write("stuck");
     sink->WaitUntilBegun(1);
-    for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);
+    for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);  // returns each time
+    EXPECT_EQ(log.dropped_lines(), 2u);
+    EXPECT_THAT(sink->lines(), IsEmpty());
     sink->Open();
     sink->WaitFor(3);
     log.Write("c");
@@ -262,6 +241,39 @@ TEST(QueuedLogSinkTest, KeepsEveryLineOfManyThreads) {
   }
   EXPECT_EQ(written + dropped, 800u);
   EXPECT_EQ(reported, dropped);
+}
+
+constexpr int kFull = 8;  // RESOURCE_EXHAUSTED
+constexpr int kWho = 16;  // UNAUTHENTICATED
+
+TEST(CallLogFilterTest, LogsTheFirstRejectionsOfASecondAndCountsTheRest) {
+  CallLogFilter filter(2);
+  EXPECT_TRUE(filter.LogRefusal(kFull, 100.0));
+  EXPECT_TRUE(filter.LogRefusal(kFull, 100.5));
+  EXPECT_FALSE(filter.LogRefusal(kFull, 100.6));
+  EXPECT_FALSE(filter.LogRefusal(kFull, 100.9));
+  EXPECT_TRUE(filter.LogRefusal(kWho, 100.9)) << "each code has its own limit";
+  EXPECT_TRUE(filter.LogRefusal(kFull, 101.0));
+  EXPECT_TRUE(filter.LogRefusal(kFull, 10)) << "after the clock was set back";
+  const std::vector<CallLogFilter::Unlogged> unlogged = filter.TakeUnlogged();
+  ASSERT_EQ(unlogged.size(), 1u);
+  EXPECT_EQ(unlogged[0].code, kFull);
+  EXPECT_EQ(unlogged[0].calls, 2u);
+  EXPECT_TRUE(filter.TakeUnlogged().empty());
+}
+
+TEST(CallLogFilterTest, EveryCallIsLoggedOrCounted) {
+  CallLogFilter filter(10);
+  std::atomic<int> logged{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 500; ++i) logged += filter.LogRefusal(kFull, 7) ? 1 : 0;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(logged.load(), 10);
+  EXPECT_EQ(filter.TakeUnlogged().at(0).calls, 1990u);
 }
 
 }  // namespace

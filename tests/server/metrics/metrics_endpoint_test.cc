@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include "tests/server/support/http_get.h"
+#include "tests/server/support/raw_call.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::metrics {
@@ -52,15 +52,12 @@ TEST_F(MetricsEndpointTest, ServesMetricsInThePrometheusFormat) {
   EXPECT_THAT(response, HasSubstr("\r\n\r\nduet_frames_total 7\n"));
 }
 
-TEST_F(MetricsEndpointTest, HealthzReportsHealth) {
+TEST_F(MetricsEndpointTest, ReportsHealthAndReadiness) {
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
-  healthy_ = false;
-  EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 503"));
-}
-
-TEST_F(MetricsEndpointTest, ReadyzReportsWhetherCallsAreServed) {
   EXPECT_THAT(Get("/readyz"), StartsWith("HTTP/1.1 503"));
+  healthy_ = false;
   ready_ = true;
+  EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 503"));
   EXPECT_THAT(Get("/readyz"), StartsWith("HTTP/1.1 200 OK"));
 }
 
@@ -124,15 +121,6 @@ TEST_F(MetricsEndpointTest, LongReplyArrivesCompletely) {
   const std::size_t body = response.find("\r\n\r\n") + 4;
   ASSERT_EQ(response.size(), body + text_.size());
   EXPECT_TRUE(response.compare(body, text_.size(), text_) == 0);
-}
-
-TEST_F(MetricsEndpointTest, SecondEndpointOnThePortFailsWithTheAddress) {
-  MetricsEndpointOptions options;
-  options.host = "127.0.0.1";
-  options.port = endpoint_->port();
-  EXPECT_THAT(MetricsEndpoint::Start(std::move(options)),
-              StatusIs(absl::StatusCode::kUnavailable,
-                       HasSubstr("127.0.0.1:" + std::to_string(endpoint_->port()))));
 }
 
 const HttpPages& Pages() {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/registry/model_manager.h"
-#include "tests/support/fake_synthesizer.h"
+#include "tests/server/support/fakes.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -44,8 +44,7 @@ class ModelControlTest : public ::testing::Test {
     manager_.UseRepository(folder_.path(),
                            [this](const fs::path& place)
                                -> absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> {
-                             began_.Set();
-                             gate_.Wait();
+                             gate_.Pass();
                              engine::ModelDescription description = test::FakeDescription();
                              description.version = std::stoi(place.filename().string());
                              return std::make_shared<FakeSynthesizer>(description);
@@ -56,28 +55,15 @@ class ModelControlTest : public ::testing::Test {
     WriteTestFile(folder_ / ("fake/" + version + "/manifest.json"), "{}");
   }
 
-  // Is set once and then stays so.
-  class Event {
-   public:
-    void Set() {
-      common::MutexLock lock(mutex_);
-      set_ = true;
-      changed_.NotifyAll();
-    }
-    void Wait() {
-      common::MutexLock lock(mutex_);
-      while (!set_) changed_.Wait(mutex_);
-    }
-
-   private:
-    common::Mutex mutex_;
-    common::CondVar changed_;
-    bool set_ DUET_GUARDED_BY(mutex_) = false;
-  };
+  // Reloads, and returns the report when it is there.
+  static absl::StatusOr<ReloadReport> Reload(ModelControl& control) {
+    std::promise<absl::StatusOr<ReloadReport>> reloaded;
+    control.Reload([&](const auto& report) { reloaded.set_value(report); });
+    return reloaded.get_future().get();
+  }
 
   TemporaryFolder folder_;
-  Event began_;
-  Event gate_;
+  test::Gate gate_;
   Events events_;
   ModelRegistry registry_;
   ModelManager manager_{registry_, events_};
@@ -88,12 +74,12 @@ TEST_F(ModelControlTest, ReloadsWhileEverythingElseGoesOn) {
   ModelControl control(manager_, registry_, events_);
   std::promise<absl::StatusOr<ReloadReport>> reloaded;
   control.Reload([&](const auto& report) { reloaded.set_value(report); });
-  began_.Wait();
+  gate_.WaitUntilReached();
   ASSERT_EQ(control.List().size(), 1u);
   EXPECT_EQ(control.List()[0].state, ModelState::kLoading);
   EXPECT_THAT(control.SetLabel("fake", "stable", 1),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("not served")));
-  gate_.Set();
+  gate_.Open();
   const absl::StatusOr<ReloadReport> report = reloaded.get_future().get();
   ASSERT_THAT(report, IsOk());
   EXPECT_THAT(report->loaded, ElementsAre("fake/1"));
@@ -106,7 +92,7 @@ TEST_F(ModelControlTest, ReloadsWhileEverythingElseGoesOn) {
 
 TEST_F(ModelControlTest, ReloadsSettingsBeforeTheRepository) {
   Write("1");
-  gate_.Set();
+  gate_.Open();
   ModelControl control(manager_, registry_, events_);
   std::vector<std::string> order;
   control.AddReloadable({"tokens", [&] {
@@ -117,9 +103,7 @@ TEST_F(ModelControlTest, ReloadsSettingsBeforeTheRepository) {
                            order.push_back("certificates");
                            return absl::OkStatus();
                          }});
-  std::promise<absl::StatusOr<ReloadReport>> reloaded;
-  control.Reload([&](const auto& report) { reloaded.set_value(report); });
-  const absl::StatusOr<ReloadReport> report = reloaded.get_future().get();
+  const absl::StatusOr<ReloadReport> report = Reload(control);
   ASSERT_THAT(report, IsOk());
   EXPECT_THAT(order, ElementsAre("tokens", "certificates"));
   EXPECT_THAT(report->problems, ElementsAre("tokens: line 3"));
@@ -128,7 +112,7 @@ TEST_F(ModelControlTest, ReloadsSettingsBeforeTheRepository) {
 
 TEST_F(ModelControlTest, RejectedFileIsAProblemUntilItIsFixed) {
   Write("1");
-  gate_.Set();
+  gate_.Open();
   ModelControl control(manager_, registry_, events_);
   absl::Status tokens = absl::InvalidArgumentError("line 3");
   absl::Status certificates;
@@ -136,11 +120,7 @@ TEST_F(ModelControlTest, RejectedFileIsAProblemUntilItIsFixed) {
   control.AddReloadable(
       {"certificates", [] { return absl::OkStatus(); }, [&] { return certificates; }});
   EXPECT_THAT(control.problems(), IsEmpty()) << "not reloaded yet";
-  const auto reload = [&control] {
-    std::promise<absl::StatusOr<ReloadReport>> reloaded;
-    control.Reload([&](const auto& report) { reloaded.set_value(report); });
-    return reloaded.get_future().get()->problems;
-  };
+  const auto reload = [&control] { return Reload(control)->problems; };
   EXPECT_THAT(reload(), ElementsAre("tokens: line 3"));
   EXPECT_THAT(control.problems(), ElementsAre("tokens: line 3"));
   certificates = absl::InvalidArgumentError("expired");
@@ -152,20 +132,18 @@ TEST_F(ModelControlTest, RejectedFileIsAProblemUntilItIsFixed) {
 
 TEST_F(ModelControlTest, AReloadReportsNamesThatNoModelHas) {
   Write("1");
-  gate_.Set();
+  gate_.Open();
   manager_.SetLabels({{"fak", "stable", 1}});
   ModelControl control(manager_, registry_, events_);
-  std::promise<absl::StatusOr<ReloadReport>> reloaded;
-  control.Reload([&](const auto& report) { reloaded.set_value(report); });
   EXPECT_THAT(
-      reloaded.get_future().get()->problems,
+      Reload(control)->problems,
       ElementsAre(HasSubstr("version_labels[0].model: expected one of: fake, got \"fak\"")));
 }
 
 TEST_F(ModelControlTest, LoadsAndUnloadsOneAfterTheOther) {
   Write("1");
   Write("2");
-  gate_.Set();
+  gate_.Open();
   ModelControl control(manager_, registry_, events_);
   std::promise<std::vector<absl::Status>> all;
   std::vector<absl::Status> statuses;
@@ -190,7 +168,7 @@ TEST_F(ModelControlTest, StopCancelsWorkThatHasNotStarted) {
   {
     ModelControl control(manager_, registry_, events_);
     control.Reload([&](const auto& report) { first.set_value(report.status()); });
-    began_.Wait();
+    gate_.WaitUntilReached();
     control.Load("fake", 2, [&](const absl::Status& status) { second.set_value(status); });
     control.Stop();
     EXPECT_THAT(second.get_future().get(),
@@ -198,7 +176,7 @@ TEST_F(ModelControlTest, StopCancelsWorkThatHasNotStarted) {
     control.Unload("fake", 2, [&](const absl::Status& status) { third.set_value(status); });
     EXPECT_THAT(third.get_future().get(),
                 StatusIs(absl::StatusCode::kCancelled, HasSubstr("stopping")));
-    gate_.Set();
+    gate_.Open();
   }
   EXPECT_THAT(first.get_future().get(), StatusIs(absl::StatusCode::kCancelled, HasSubstr("stop")))
       << "after the checkpoint under way";

@@ -125,22 +125,19 @@ class ModelManagerTest : public ::testing::Test {
   void SetUp() override { manager_.UseRepository(folder_.path(), LoadTestModel); }
 };
 
-TEST_F(ModelManagerTest, ServesEveryVersionOfEveryModel) {
+TEST_F(ModelManagerTest, ServesEveryVersionOfEveryModelAndSkipsUnchangedOnes) {
   Write("a", 1);
   Write("a", 2);
   Write("b", 7);
   EXPECT_THAT(Reload().loaded, ElementsAre("a/2", "a/1", "b/7"));
   EXPECT_EQ(Served(), "a/2 a/1 b/7");
-}
-
-TEST_F(ModelManagerTest, SecondReloadSkipsUnchangedCheckpoints) {
-  Write("a", 1);
-  Reload();
   events_.Take();
-  const ReloadReport report = Reload();
-  EXPECT_THAT(report.loaded, IsEmpty());
-  EXPECT_EQ(report.unchanged, 1);
+  WriteTestFile(folder_ / "a/1/NOTES.md", "better");  // no file of the checkpoint
+  WriteTestFile(folder_ / "a/1/.nfs1", "");
+  EXPECT_EQ(Reload().unchanged, 3);
   EXPECT_THAT(events_.Take(), IsEmpty());
+  WriteTestFile(folder_ / "a/1/more", "");
+  EXPECT_THAT(Reload().loaded, ElementsAre("a/1"));
 }
 
 TEST_F(ModelManagerTest, ReplacesAVersionThatHasChanged) {
@@ -152,32 +149,6 @@ TEST_F(ModelManagerTest, ReplacesAVersionThatHasChanged) {
   EXPECT_EQ(Answer({}), "a/1 new");
   EXPECT_EQ(std::get<ServedModel>(held).model->description().description, "old")
       << "whoever found the old one keeps it";
-}
-
-TEST_F(ModelManagerTest, BrokenCheckpointNeverReplacesAGoodOne) {
-  Write("a", 1, "good");
-  Reload();
-  events_.Take();
-  Write("a", 1, "bad");
-  EXPECT_THAT(Reload().refused, ElementsAre("a/1"));
-  EXPECT_EQ(Answer({}), "a/1 good");
-  EXPECT_EQ(StatusOf("a", 1).state, ModelState::kServed);
-  EXPECT_EQ(StatusOf("a", 1).error, "weights: expected 9 bytes, got 7");
-  EXPECT_THAT(events_.Take(), ElementsAre("refused a/1, served on"));
-  Write("a", 1, "mended");
-  Reload();
-  EXPECT_EQ(Answer({}), "a/1 mended");
-  EXPECT_EQ(StatusOf("a", 1).error, "");
-}
-
-TEST_F(ModelManagerTest, DocumentsAndHiddenFilesAreNoChange) {
-  Write("a", 1);
-  Reload();
-  WriteTestFile(folder_ / "a/1/NOTES.md", "better");
-  WriteTestFile(folder_ / "a/1/.nfs1", "");
-  EXPECT_EQ(Reload().unchanged, 1);
-  WriteTestFile(folder_ / "a/1/more", "");
-  EXPECT_THAT(Reload().loaded, ElementsAre("a/1"));
 }
 
 TEST_F(ModelManagerTest, TruncatedWeightsMakeAServedVersionOutdatedUntilTheyAreFixed) {
@@ -240,23 +211,16 @@ TEST_F(ModelManagerTest, ReportsConfiguredNamesThatNoModelHas) {
                   "mean first?"));
 }
 
-TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoad) {
+TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoadUntilItsFolderIsGone) {
   Write("a", 1);
   Write("a", 2, "bad");
   EXPECT_THAT(Reload().refused, ElementsAre("a/2"));
   EXPECT_EQ(StatusOf("a", 2).state, ModelState::kFailed);
   EXPECT_THAT(Reload().refused, ElementsAre("a/2"));
-  EXPECT_THAT(events_.Take(), ElementsAre("refused a/2", "loaded a/1", "refused a/2"));
-}
-
-TEST_F(ModelManagerTest, ForgetsAFailedVersionWhenItsFolderIsGone) {
-  Write("a", 1);
-  Write("a", 3, "bad");
+  Delete("a/2");
   Reload();
-  events_.Take();
-  Delete("a/3");
-  Reload();
-  EXPECT_THAT(events_.Take(), ElementsAre("forgotten a/3"));
+  EXPECT_THAT(events_.Take(),
+              ElementsAre("refused a/2", "loaded a/1", "refused a/2", "forgotten a/2"));
 }
 
 TEST_F(ModelManagerTest, UnloadsARemovedVersionAfterItsSuccessorIsServed) {
@@ -270,23 +234,16 @@ TEST_F(ModelManagerTest, UnloadsARemovedVersionAfterItsSuccessorIsServed) {
   EXPECT_EQ(manager_.List().size(), 1u);
 }
 
-TEST_F(ModelManagerTest, DefaultModelAlwaysKeepsAVersion) {
-  Write("a", 1);
-  Write("b", 1);
+TEST_F(ModelManagerTest, TheDefaultModelAndLabelledVersionsStayServedWithoutTheirFolders) {
+  manager_.SetLabels({{"b", "stable", 1}});
+  for (const char* name : {"a", "b", "c"}) Write(name, 1);
   Reload();
   ASSERT_THAT(registry_.SetDefault("a"), IsOk());
   Delete("a");
-  const ReloadReport report = Reload();
-  EXPECT_THAT(report.problems, ElementsAre(AllOf(HasSubstr("a/1 stays"), HasSubstr("last"))));
-  EXPECT_EQ(Served(), "a/1 b/1");
-}
-
-TEST_F(ModelManagerTest, UnreadableRepositoryChangesNothing) {
-  Write("a", 1);
-  Reload();
-  Delete("");
-  EXPECT_THAT(manager_.Reload(kNever), StatusIs(kNotFound, HasSubstr("cannot read")));
-  EXPECT_EQ(Served(), "a/1");
+  Delete("b");
+  EXPECT_THAT(Reload().problems, ElementsAre(AllOf(HasSubstr("a/1 stays"), HasSubstr("last")),
+                                             AllOf(HasSubstr("b/1 stays"), HasSubstr("stable"))));
+  EXPECT_EQ(Served(), "a/1 b/1 c/1");
 }
 
 TEST_F(ModelManagerTest, StopsBeforeTheNextCheckpoint) {
@@ -296,15 +253,6 @@ TEST_F(ModelManagerTest, StopsBeforeTheNextCheckpoint) {
   EXPECT_THAT(manager_.Reload([&] { return ++asked > 1; }),
               StatusIs(absl::StatusCode::kCancelled, HasSubstr("stop")));
   EXPECT_EQ(Served(), "a/2");
-}
-
-TEST_F(ModelManagerTest, LabelledVersionStaysServedWithoutItsFolder) {
-  manager_.SetLabels({{"a", "stable", 1}});
-  for (const int version : {1, 2}) Write("a", version);
-  Reload();
-  Delete("a/1");
-  EXPECT_THAT(Reload().problems, ElementsAre(AllOf(HasSubstr("a/1 stays"), HasSubstr("stable"))));
-  EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/1"));
 }
 
 TEST_F(ModelManagerTest, MovesALabelBeforeItUnloadsWhatThatLeaves) {
@@ -340,19 +288,14 @@ TEST_F(ModelManagerTest, LabelOfAFailedVersionIsRetried) {
   EXPECT_EQ(Answer({"a", {}, "canary"}), "a/2 good");
 }
 
-TEST_F(ModelManagerTest, LoadsAgainEvenWhatHasNotChanged) {
+TEST_F(ModelManagerTest, LoadReportsMissingAndBrokenVersionsAndLoadsAgainWhatHasNotChanged) {
   Write("a", 1);
+  Write("a", 2, "bad");
   Reload();
   const std::weak_ptr<const engine::Synthesizer> before =
       std::get<ServedModel>(registry_.Find({})).model;
   EXPECT_THAT(manager_.Load("a", 1), IsOk());
   EXPECT_TRUE(before.expired());
-}
-
-TEST_F(ModelManagerTest, LoadReportsMissingAndBrokenVersions) {
-  Write("a", 1);
-  Write("a", 2, "bad");
-  EXPECT_THAT(manager_.Load("a", 3), StatusIs(kNotFound, HasSubstr("version 3 of model \"a\"")));
   EXPECT_THAT(manager_.Load("../a", 1), StatusIs(kNotFound, HasSubstr("../a")));
   EXPECT_THAT(manager_.Load("a", 2),
               StatusIs(kFailedPrecondition, HasSubstr("weights: expected 9 bytes, got 7")));
@@ -370,17 +313,6 @@ TEST_F(ModelManagerTest, UnloadedVersionStaysUnloadedUntilItIsLoadedByName) {
   EXPECT_THAT(manager_.Load("a", 2), IsOk());
   Reload();
   EXPECT_EQ(Served(), "a/2 a/1");
-}
-
-TEST_F(ModelManagerTest, RefusesToUnloadWhatIsNeeded) {
-  for (const int version : {1, 2}) Write("a", version);
-  Reload();
-  ASSERT_THAT(registry_.SetLabel("a", "stable", 1), IsOk());
-  EXPECT_THAT(manager_.Unload("a", 1), StatusIs(kFailedPrecondition, HasSubstr("\"stable\"")));
-  EXPECT_THAT(manager_.Unload("a", 2), IsOk());
-  ASSERT_THAT(registry_.DeleteLabel("a", "stable"), IsOk());
-  EXPECT_THAT(manager_.Unload("a", 1), StatusIs(kFailedPrecondition, HasSubstr("last")));
-  EXPECT_THAT(manager_.Unload("a", 9), StatusIs(kNotFound, HasSubstr("version 9")));
 }
 
 TEST(ModelManagerWithoutRepositoryTest, ServesWhatItIsGivenAndHasLabels) {

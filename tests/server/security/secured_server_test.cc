@@ -17,13 +17,11 @@
 #include "model/base/sha256.h"
 #include "server/config/settings.h"
 #include "server/lifecycle/duet_server.h"
-#include "tests/server/support/gated_model.h"
-#include "tests/server/support/http_get.h"
+#include "tests/server/support/fakes.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_certificate.h"
@@ -40,7 +38,6 @@ using test::Health;
 using test::HttpGet;
 using test::MakeTestCertificate;
 using test::Refusal;
-using test::Reply;
 using test::SampleRequest;
 using test::TemporaryFolder;
 using test::TestCertificate;
@@ -124,7 +121,7 @@ class SecuredServerTest : public ::testing::Test {
   std::unique_ptr<lifecycle::DuetServer> server_;
 };
 
-TEST_F(SecuredServerTest, WithoutATokenTheDoorStaysShutWithoutAWordTooMuch) {
+TEST_F(SecuredServerTest, CallsWithoutAValidTokenAreRejectedWithoutASecret) {
   UseAccess("studio synthesise " + Known("secret-1"));
   Start();
   const Refusal missing = Decode(List(PlainText()));
@@ -141,7 +138,7 @@ TEST_F(SecuredServerTest, WithoutATokenTheDoorStaysShutWithoutAWordTooMuch) {
               HasSubstr(R"(duet_refusals_total{reason="CREDENTIALS_INVALID"} 4)"));
 }
 
-TEST_F(SecuredServerTest, EveryMethodIsBehindTheDoorAndHealthBefore) {
+TEST_F(SecuredServerTest, EveryMethodNeedsATokenAndHealthNone) {
   UseAccess("studio synthesise " + Known("secret-1"));
   Start();
   const auto stub = v1::MotionSynthesis::NewStub(PlainText());
@@ -153,7 +150,7 @@ TEST_F(SecuredServerTest, EveryMethodIsBehindTheDoorAndHealthBefore) {
   EXPECT_EQ(Health(PlainText(), ""), "SERVING");
 }
 
-TEST_F(SecuredServerTest, ACallerThatCallsTooOftenIsToldWhenToComeBack) {
+TEST_F(SecuredServerTest, ACallerThatCallsTooOftenGetsARetryDelay) {
   // So few that none comes back while the test runs.
   UseAccess(absl::StrCat("studio synthesise ", Known("s"), " calls_per_second=0.001\n",
                          "farm synthesise ", Known("f"), "\n"));

@@ -11,15 +11,17 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "duet/v1/model.pb.h"
+#include "model/base/request_id.h"
+#include "server/service/call_pipeline.h"
 #include "server/service/refusals.h"
 #include "server/service/wire.h"
-#include "tests/server/support/fake_clock.h"
-#include "tests/server/support/recording_observer.h"
+#include "tests/server/support/fakes.h"
 #include "tests/server/support/refusal.h"
 #include "tests/support/matchers.h"
 
@@ -28,7 +30,6 @@ namespace {
 
 using test::FakeClock;
 using test::RecordingObserver;
-
 using ::testing::_;
 
 using absl::StatusCode;
@@ -178,15 +179,6 @@ TEST_F(CallTest, EventsAfterTheEndAreIgnored) {
   EXPECT_EQ(observer_.records().size(), 1u);
 }
 
-TEST_F(CallTest, ArrivedMessageNoLongerCountsAsSlow) {
-  PuppetTransport other;
-  const auto first = Receive(transport_), second = Receive(other);
-  first->CheckTime(clock_.Now() + seconds(1));
-  ASSERT_TRUE(first->OnFirstMessage());
-  second->CheckTime(clock_.Now() + seconds(1));
-  EXPECT_FALSE(other.finished.has_value()) << "the only leave to arrive slowly was kept";
-}
-
 TEST_F(CallTest, AbortWaitsForTheMessageBeingHandled) {
   const auto call = Receive(transport_);
   EXPECT_TRUE(call->OnFirstMessage());
@@ -210,29 +202,32 @@ TEST_F(CallTest, CallThatEndedWhileItWasHandledWritesNothing) {
   EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
-TEST_F(CallTest, SlowMessageNeedsAdmission) {
+TEST_F(CallTest, SlowMessageNeedsAdmissionUntilItArrivesOrItsCallEnds) {
   PuppetTransport second_transport;
   const auto first = Receive(transport_), second = Receive(second_transport);
   clock_.Advance(milliseconds(99));
   first->CheckTime(clock_.Now());
   second->CheckTime(clock_.Now());
-  EXPECT_FALSE(transport_.finished.has_value());
+  EXPECT_FALSE(second_transport.finished.has_value());
   clock_.Advance(milliseconds(1));
   first->CheckTime(clock_.Now());
   first->CheckTime(clock_.Now());  // has leave already
-  second->CheckTime(clock_.Now());
   EXPECT_FALSE(transport_.finished.has_value());
+  second->CheckTime(clock_.Now());
   ASSERT_TRUE(second_transport.finished.has_value());
   EXPECT_EQ(second_transport.finished->code(), StatusCode::kResourceExhausted);
   EXPECT_EQ(test::Decode(*second_transport.finished).retry_seconds, 1);
-
-  // The leave ends with the call.
-  first->Abort(absl::CancelledError("gone"));
-  PuppetTransport third_transport;
+  PuppetTransport third_transport, fourth_transport;
+  ASSERT_TRUE(first->OnFirstMessage());
   const auto third = Receive(third_transport);
   clock_.Advance(milliseconds(100));
   third->CheckTime(clock_.Now());
-  EXPECT_FALSE(third_transport.finished.has_value());
+  EXPECT_FALSE(third_transport.finished.has_value()) << "the leave of the first is free";
+  third->Abort(absl::CancelledError("gone"));
+  const auto fourth = Receive(fourth_transport);
+  clock_.Advance(milliseconds(100));
+  fourth->CheckTime(clock_.Now());
+  EXPECT_FALSE(fourth_transport.finished.has_value());
 }
 
 TEST_F(CallTest, MessageAfterTheTimeoutEndsTheCall) {
@@ -336,10 +331,14 @@ TEST_F(StreamTest, AbortCancelsTheSourceAndDropsItsReplies) {
   call_->Abort(absl::UnavailableError("a later reason"));
   EXPECT_TRUE(source_.cancelled);
   EXPECT_FALSE(transport_.finished.has_value()) << "a write is in progress";
-  Written();
+  Written(/*ok=*/false);
   EXPECT_THAT(written(), ElementsAre("one"));
   EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
   EXPECT_THAT(observer_.records(), SizeIs(1));
+  call_.reset();
+  source_.events.on_progress();  // from a window of a call that is gone
+  EXPECT_FALSE(source_.events.read_next(1));
+  EXPECT_THAT(written(), ElementsAre("one"));
 }
 
 TEST_F(StreamTest, FailedWriteEndsTheCall) {
@@ -403,15 +402,6 @@ TEST_F(StreamTest, WriteOfAnAbortedCallCanBeBrokenOff) {
   EXPECT_THAT(transport_.broken_off_with, StatusIs(StatusCode::kUnavailable, "shutting down"));
   Written(/*ok=*/false);
   EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kUnavailable, "shutting down"));
-}
-
-TEST_F(StreamTest, ProgressAfterTheCallIsGoneIsIgnored) {
-  Run();
-  call_->Abort(absl::CancelledError("gone"));
-  call_.reset();
-  source_.events.on_progress();
-  EXPECT_FALSE(source_.events.read_next(1));
-  EXPECT_THAT(written(), IsEmpty());
 }
 
 // Looks, when a call is reported, at what others can see and do at that moment.
@@ -512,7 +502,6 @@ TEST_F(FurtherMessagesTest, MessagesAfterTheEndAreDropped) {
 }
 
 TEST_F(FurtherMessagesTest, DrainIsReportedOnce) {
-  EXPECT_EQ(source_.drains, 0);
   call_->Drain();
   call_->Drain();
   EXPECT_EQ(source_.drains, 1);
@@ -520,11 +509,37 @@ TEST_F(FurtherMessagesTest, DrainIsReportedOnce) {
   EXPECT_TRUE(call_->ReadNext(30));
 }
 
-TEST_F(StreamTest, DrainThatBeginsBeforeTheStreamIsReported) {
-  call_->Drain();
-  EXPECT_EQ(source_.drains, 0);
-  CallTest::Run(*call_, /*takes_messages=*/true);
-  EXPECT_EQ(source_.drains, 1);
+TEST(RequestIdTest, MakesDistinctOnes) {
+  std::set<std::string> ids;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string id = NewRequestId();
+    EXPECT_EQ(id.size(), 32u);
+    EXPECT_TRUE(base::IsRequestId(id));
+    ids.insert(id);
+  }
+  EXPECT_EQ(ids.size(), 1000u);
+}
+
+TEST(TraceparentTest, HasTheW3cForm) {
+  EXPECT_TRUE(IsTraceparent("00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"));
+  for (const char* text : {"", "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-0",
+                           "00-4BF92F3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01",
+                           "00-4bf92f3577b34da6a3ce929d0e0e473g-00f067aa0ba902b7-01",
+                           "00x4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"}) {
+    EXPECT_FALSE(IsTraceparent(text)) << text;
+  }
+}
+
+TEST(ClientTest, IsAnAddressANetworkOfIpv6OrElseThePeer) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"ipv4:192.0.2.7:4711", "ipv4:192.0.2.7"},
+      {"ipv6:%5B2001:db8:1:2:3:4:5:6%5D:4711", "ipv6:2001:db8:1:2::/64"},
+      {"ipv6:%5B2001:db8:1:2::9%5D:1", "ipv6:2001:db8:1:2::/64"},
+      {"ipv6:%5B::ffff:192.0.2.7%5D:4711", "ipv4:192.0.2.7"},
+      {"unix:/run/duet.sock", "unix:/run/duet.sock"},
+      {"", ""},
+      {"ipv6:nonsense", "ipv6"}};
+  for (const auto& [peer, client] : cases) EXPECT_EQ(ClientOf(peer), client);
 }
 
 }  // namespace

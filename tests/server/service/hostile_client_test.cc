@@ -1,14 +1,12 @@
-// Callers that keep to the protocol and mean no good, or no longer care: over the wire.
+// Over the wire: callers that keep to the protocol and take more than their share, or nothing.
 
 #include <gmock/gmock.h>
-#include <grpcpp/completion_queue.h>
 #include <grpcpp/create_channel.h>
-#include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/support/channel_arguments.h>
+#include <grpcpp/support/sync_stream.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <limits>
 #include <memory>
 #include <string>
@@ -16,14 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include "duet/v1/live.pb.h"
 #include "server/service/refusals.h"
-#include "tests/server/support/fake_clock.h"
+#include "tests/server/support/fakes.h"
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::service {
@@ -32,7 +30,7 @@ namespace {
 using test::Call;
 using test::Decode;
 using test::FakeClock;
-using test::LimitCall;
+using test::Gate;
 using test::PuppetScheduler;
 using test::RawCall;
 using test::ReadAll;
@@ -43,79 +41,22 @@ using test::TimedContext;
 
 using absl::StatusCode;
 
-// A call that sends its headers and then nothing, until told to.
-class SilentCall {
- public:
-  explicit SilentCall(const RunningService& running,
-                      const std::string& method = "/duet.v1.MotionSynthesis/Synthesize")
-      : stub_(running.channel()) {
-    LimitCall(context_);
-    call_ = stub_.PrepareCall(&context_, method, &queue_);
-    call_->StartCall(nullptr);
-    Next();
-  }
-  ~SilentCall() {
-    context_.TryCancel();
-    queue_.Shutdown();
-    while (Next()) {
-    }
-  }
-  void SendNoMore() {
-    call_->WritesDone(nullptr);
-    Next();
-  }
-  void Cancel() { context_.TryCancel(); }
-  grpc::Status Finish() {
-    grpc::Status status;
-    call_->Finish(&status, nullptr);
-    Next();
-    return status;
-  }
+constexpr char kSynthesize[] = "/duet.v1.MotionSynthesis/Synthesize";
 
- private:
-  bool Next() {
-    void* tag = nullptr;
-    bool ok = false;
-    return queue_.Next(&tag, &ok) && ok;
-  }
-
-  grpc::GenericStub stub_;
-  grpc::ClientContext context_;
-  grpc::CompletionQueue queue_;
-  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
-};
-
-// A scheduler that keeps whoever asks it about bulk work waiting: that is asked when a message has
-// been parsed.
-class StandingScheduler final : public batching::WindowScheduler {
+// A scheduler that holds up whoever asks it about bulk work: that is asked when a message has been
+// parsed.
+class HoldingScheduler final : public batching::WindowScheduler {
  public:
   absl::Status Submit(batching::WindowJob) override {
     return absl::UnavailableError("a puppet's end");
   }
   absl::Status CheckRoom(batching::Priority priority, const std::string&) const override {
-    common::MutexLock lock(mutex_);
-    if (priority == batching::Priority::kBulk) ++waiting_;
-    changed_.NotifyAll();
-    while (priority == batching::Priority::kBulk && !may_go_on_) changed_.Wait(mutex_);
+    if (priority == batching::Priority::kBulk) gate.Pass();
     return absl::OkStatus();
   }
   std::size_t queued_windows() const override { return 0; }
 
-  void WaitForOne() const {
-    common::MutexLock lock(mutex_);
-    while (waiting_ == 0) changed_.Wait(mutex_);
-  }
-  void GoOn() {
-    common::MutexLock lock(mutex_);
-    may_go_on_ = true;
-    changed_.NotifyAll();
-  }
-
- private:
-  mutable common::Mutex mutex_;
-  mutable common::CondVar changed_;
-  mutable int waiting_ DUET_GUARDED_BY(mutex_) = 0;
-  bool may_go_on_ DUET_GUARDED_BY(mutex_) = false;
+  mutable Gate gate;
 };
 
 // A request of somewhat more than a mebibyte, of bulk work.
@@ -127,7 +68,7 @@ std::string LargeRequest() {
 }
 
 TEST(HostileClientTest, ParsingLargeRequestsDelaysNoOtherCall) {
-  StandingScheduler scheduler;
+  HoldingScheduler scheduler;
   RunningService::Setup setup;
   setup.scheduler = &scheduler;
   setup.admission.max_calls = 64;
@@ -135,33 +76,21 @@ TEST(HostileClientTest, ParsingLargeRequestsDelaysNoOtherCall) {
   // More than gRPC has threads, 16 at most.
   std::vector<std::unique_ptr<RawCall>> calls;
   for (int i = 0; i < 18; ++i) {
-    calls.push_back(std::make_unique<RawCall>(
-        running.channel(), "/duet.v1.MotionSynthesis/Synthesize", LargeRequest()));
+    calls.push_back(std::make_unique<RawCall>(running.channel(), kSynthesize, LargeRequest()));
   }
-  scheduler.WaitForOne();
+  scheduler.gate.WaitUntilReached();
   TimedContext context;
   v1::ListModelsResponse models;
   EXPECT_TRUE(running.stub().ListModels(&context, {}, &models).ok());
-  scheduler.GoOn();
+  scheduler.gate.Open();
   for (const auto& call : calls) EXPECT_FALSE(call->Finish().ok());
-}
-
-TEST(HostileClientTest, EveryMethodBoundsWhatItDoesNotKnow) {
-  RunningService running;
-  std::string bomb;
-  for (int i = 0; i < 2000; ++i) bomb.append("\xf8\x06\x01", 3);
-  for (const char* method : {"Synthesize", "ListModels", "GetModel"}) {
-    RawCall call(running.channel(), std::string("/duet.v1.MotionSynthesis/") + method, bomb);
-    EXPECT_FALSE(call.Read().has_value()) << method;
-    EXPECT_EQ(Decode(call.Finish()).code, StatusCode::kInvalidArgument) << method;
-  }
 }
 
 TEST(HostileClientTest, FullServerRejectsWithoutReadingTheRequest) {
   PuppetScheduler puppet;
   RunningService running(&puppet);
   puppet.Refuse(absl::ResourceExhaustedError("the queue is full"));
-  SilentCall call(running);
+  RawCall call(running.channel(), kSynthesize);  // only its headers
   const Refusal refusal = Decode(call.Finish());
   EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
   EXPECT_EQ(refusal.reason, "QUEUE_FULL");
@@ -180,7 +109,8 @@ TEST(HostileClientTest, SilentCallsLeavePlacesForOtherClients) {
     return Call(running.stub(), SampleRequest(), context).status;
   };
   // Without the key a client is its address: this machine's.
-  SilentCall first(running), second(running), third(running);
+  RawCall first(running.channel(), kSynthesize), second(running.channel(), kSynthesize),
+      third(running.channel(), kSynthesize);
   while (running.admission().calls() < 3) std::this_thread::yield();
   TimedContext context;
   const Refusal refusal = Decode(Call(running.stub(), SampleRequest(), context).status);
@@ -188,18 +118,9 @@ TEST(HostileClientTest, SilentCallsLeavePlacesForOtherClients) {
   EXPECT_TRUE(synthesize("somebody else").ok());
 }
 
-TEST(HostileClientTest, CallWithoutAMessageIsMalformed) {
-  RunningService running;
-  for (const char* method : {"Synthesize", "GetModel"}) {
-    SilentCall call(running, std::string("/duet.v1.MotionSynthesis/") + method);
-    call.SendNoMore();
-    EXPECT_EQ(Decode(call.Finish()).code, StatusCode::kInvalidArgument) << method;
-  }
-}
-
 TEST(HostileClientTest, ShutdownEndsACallThatWaitsForItsMessage) {
   RunningService running;
-  SilentCall call(running);
+  RawCall call(running.channel(), kSynthesize);  // only its headers
   while (running.calls().records().empty()) {
     running.service().AbortAll(absl::UnavailableError("the server is shutting down"));
     std::this_thread::yield();
@@ -293,19 +214,123 @@ TEST(HostileClientTest, RequestBytesAreSharedAndReleased) {
   EXPECT_EQ(running.admission().held_bytes(), 0u);
 }
 
-TEST(HostileClientTest, WindowsCarryTheNameOfTheirClient) {
-  PuppetScheduler puppet;
+// Live sessions.
+
+using Message = v1::SynthesizeLiveRequest;
+
+RunningService::Setup LiveSetup() {
   RunningService::Setup setup;
-  setup.scheduler = &puppet;
-  setup.client_key = "x-client";
+  setup.model = std::make_shared<test::FakeSynthesizer>(test::SamplingDescription());
+  return setup;
+}
+
+// A start with so many frames of history of both motions.
+Message Start(int frames = 0) {
+  Message message;
+  *message.mutable_start() = test::SampleLiveStart(frames);
+  return message;
+}
+
+Message Frames(int first, int count) {
+  Message message;
+  *message.mutable_frames() = test::SampleLeaderFrames(first, count);
+  return message;
+}
+
+// One session.
+class Session {
+ public:
+  explicit Session(RunningService& running) : stream_(running.stub().SynthesizeLive(&context_)) {}
+  Session(RunningService& running, const Message& first) : Session(running) { Send(first); }
+
+  void Send(const Message& message) { stream_->Write(message); }
+  // The next message; without a payload at the end.
+  v1::SynthesizeLiveResponse Read() {
+    v1::SynthesizeLiveResponse response;
+    if (!stream_->Read(&response)) response.Clear();
+    return response;
+  }
+  // Reads to the end, and returns the status.
+  grpc::Status Finish() {
+    stream_->WritesDone();
+    while (Read().payload_case() != v1::SynthesizeLiveResponse::PAYLOAD_NOT_SET) {
+    }
+    return stream_->Finish();
+  }
+
+ private:
+  TimedContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<Message, v1::SynthesizeLiveResponse>> stream_;
+};
+
+Refusal RefusalOf(RunningService& running, const Message& first) {
+  return Decode(Session(running, first).Finish());
+}
+
+TEST(LiveServiceTest, HugeStartIsRefusedUnparsed) {
+  RunningService running(LiveSetup());
+  Message message = Start(3);
+  // Would be refused for its length as well, but only once it was parsed.
+  message.mutable_start()->mutable_history()->mutable_follower_positions()->Resize(1 << 20, 0);
+  const Refusal refusal = RefusalOf(running, message);
+  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
+  EXPECT_THAT(refusal.message, HasSubstr("4194304 bytes"));
+}
+
+TEST(LiveServiceTest, BytesOfAStartAreHeldOnlyUntilTheSessionBegins) {
+  RunningService::Setup setup = LiveSetup();
+  const Message start = Start(60);
+  setup.admission.max_held_bytes = start.ByteSizeLong() + 100;
   RunningService running(setup);
-  TimedContext context;
-  context.AddMetadata("x-client", "studio");
-  const auto reader = running.stub().Synthesize(&context, SampleRequest());
-  puppet.WaitForJobs(1);
-  EXPECT_EQ(puppet.NextClient(), "studio");
-  puppet.RunNext();
-  EXPECT_TRUE(ReadAll(*reader).status.ok());
+  Session first(running, start);
+  EXPECT_TRUE(first.Read().has_header());
+  Session second(running, start);
+  EXPECT_TRUE(second.Read().has_header());
+  EXPECT_EQ(running.admission().held_bytes(), 0u);
+  Message longer = Start(100);
+  EXPECT_EQ(RefusalOf(running, longer).code, StatusCode::kResourceExhausted);
+  EXPECT_EQ(running.admission().held_bytes(), 0u);
+}
+
+TEST(LiveServiceTest, SessionsThatOpenAtOnceNeedNoRoomInTheQueue) {
+  constexpr int kSessions = 12;
+  PuppetScheduler scheduler;
+  RunningService::Setup setup = LiveSetup();
+  // A queue that is full: CheckRoom refuses, and Submit takes only windows of admitted calls.
+  setup.scheduler = &scheduler;
+  RunningService running(setup);
+  scheduler.Refuse(absl::ResourceExhaustedError("the queue is full"), /*only_first_windows=*/true);
+  std::vector<std::unique_ptr<Session>> sessions;
+  for (int i = 0; i < kSessions; ++i) {
+    sessions.push_back(std::make_unique<Session>(running, Start()));
+    sessions.back()->Send(Frames(0, 1));
+  }
+  scheduler.WaitForJobs(kSessions);
+  EXPECT_EQ(test::Call(running.stub(), SampleRequest()).status.error_code(),
+            grpc::StatusCode::RESOURCE_EXHAUSTED)
+      << "a clip needs room";
+  for (int i = 0; i < kSessions; ++i) scheduler.RunNext();
+  for (const auto& session : sessions) {
+    EXPECT_TRUE(session->Read().has_header());
+    EXPECT_EQ(session->Read().frames().frame_count(), 1u);
+    EXPECT_TRUE(session->Finish().ok());
+  }
+}
+
+TEST(LiveServiceTest, SessionsAreBoundedByThePlacesOfCalls) {
+  test::FakeClock clock;  // no session becomes idle
+  RunningService::Setup setup = LiveSetup();
+  setup.clock = &clock;
+  setup.admission.max_calls = 3;
+  RunningService running(setup);
+  std::vector<std::unique_ptr<Session>> sessions;
+  for (int i = 0; i < 3; ++i) {
+    sessions.push_back(std::make_unique<Session>(running, Start()));
+    EXPECT_TRUE(sessions.back()->Read().has_header());
+  }
+  const Refusal refusal = RefusalOf(running, Start());
+  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
+  EXPECT_GT(refusal.retry_seconds, 0);
 }
 
 }  // namespace

@@ -1,18 +1,20 @@
 // How calls end other than well: refusals over the wire, deadlines, cancellation, failures.
 
 #include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::service {
@@ -62,72 +64,51 @@ TEST(ServiceRefusalTest, LargestRejectionReachesTheClient) {
   EXPECT_GT(refusal.violations.size(), 5u);
 }
 
-class MalformedBytesTest : public ::testing::TestWithParam<std::pair<std::string, std::string>> {};
-
-TEST_P(MalformedBytesTest, AreInvalidArgumentsWithAReason) {
-  RunningService running;
-  const auto& [method, message] = GetParam();
-  // A model name that is not UTF-8, and a length that runs past the end.
-  for (const std::string& bytes :
-       {std::string("\x0a\x04\x0a\x02\xff\xfe"), std::string("\x0a\x7f")}) {
-    RawCall call(running.channel(), "/duet.v1.MotionSynthesis/" + method, bytes);
-    EXPECT_FALSE(call.Read().has_value());
-    const Refusal refusal = Decode(call.Finish());
-    EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(refusal.Of("duet.v1." + message), HasSubstr("bytes that do not parse"));
+TEST(ServiceRefusalTest, EveryMethodBoundsAndChecksItsMessage) {
+  RunningService::Setup setup;
+  setup.limits.max_request_bytes = 8192;
+  RunningService running(setup);
+  std::string bomb;
+  for (int i = 0; i < 2000; ++i) bomb.append("\xf8\x06\x01", 3);  // unknown fields
+  const std::string large = std::string("\xfa\x06\xa8\x46", 4) + std::string(9000, 'x');
+  const std::tuple<std::string, const char*, StatusCode> cases[] = {
+      {bomb, "INVALID_REQUEST", StatusCode::kInvalidArgument},
+      {large, "REQUEST_TOO_LARGE", StatusCode::kResourceExhausted},
+      {"\x0a\x04\x0a\x02\xff\xfe", "INVALID_REQUEST", StatusCode::kInvalidArgument},  // UTF-8
+      {"\x0a\x7f", "INVALID_REQUEST", StatusCode::kInvalidArgument}};  // runs past the end
+  for (const std::string method : {"Synthesize", "GetModel", "ListModels"}) {
+    const std::string path = "/duet.v1.MotionSynthesis/" + method;
+    for (const auto& [bytes, reason, code] : cases) {
+      // A request to list models has no field that could be malformed.
+      if (method == "ListModels" && bytes.size() < 10) continue;
+      RawCall call(running.channel(), path, bytes);
+      EXPECT_FALSE(call.Read().has_value()) << method;
+      const Refusal refusal = Decode(call.Finish());
+      EXPECT_EQ(refusal.reason, reason) << method;
+      EXPECT_EQ(refusal.code, code) << method;
+      if (bytes.size() < 10) {
+        EXPECT_THAT(refusal.Of("duet.v1." + method + "Request"),
+                    HasSubstr("bytes that do not parse"));
+      }
+    }
+    RawCall without_message(running.channel(), path);
+    without_message.SendNoMore();
+    EXPECT_EQ(Decode(without_message.Finish()).code, StatusCode::kInvalidArgument) << method;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, MalformedBytesTest,
-                         ::testing::Values(std::pair{"Synthesize", "SynthesizeRequest"},
-                                           std::pair{"GetModel", "GetModelRequest"}));
-
-TEST(ServiceRefusalTest, UnknownModelErrorListsServedModels) {
-  RunningService running;
-  v1::SynthesizeRequest request = SampleRequest();
-  request.mutable_model()->set_name("nobody");
-  const Refusal refusal = Decode(Call(running.stub(), request).status);
-  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
-  EXPECT_EQ(refusal.Of("model.name"), "expected a served model (fake), got \"nobody\"");
-  EXPECT_EQ(refusal.reason, "MODEL_NOT_FOUND");
-}
-
-RunningService::Setup SmallRequests() {
+TEST(ServiceRefusalTest, RejectionOfALargeRequestNamesTheLimit) {
   RunningService::Setup setup;
   setup.limits.max_request_bytes = 8192;  // 40 frames are 7 kB
-  return setup;
-}
-
-TEST(ServiceRefusalTest, RejectionOfALargeRequestNamesTheLimit) {
-  RunningService running(SmallRequests());
+  RunningService running(setup);
   EXPECT_TRUE(Call(running.stub(), SampleRequest(40)).status.ok());
   const v1::SynthesizeRequest request = SampleRequest(80);
   const Refusal refusal = Decode(Call(running.stub(), request).status);
-  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
   EXPECT_EQ(refusal.reason, "REQUEST_TOO_LARGE");
   EXPECT_EQ(refusal.metadata.at("max_request_bytes"), "8192");
   EXPECT_EQ(refusal.metadata.at("request_bytes"), std::to_string(request.ByteSizeLong()));
   EXPECT_THAT(refusal.message, HasSubstr("max_request_bytes = 8192"));
   EXPECT_LT(refusal.retry_seconds, 0) << "the same request will not fit later either";
-}
-
-TEST(ServiceRefusalTest, EveryMethodHasTheLimit) {
-  RunningService running(SmallRequests());
-  // A field that the message does not know, of 9000 bytes.
-  const std::string bytes = std::string("\xfa\x06\xa8\x46", 4) + std::string(9000, 'x');
-  for (const char* method : {"Synthesize", "ListModels", "GetModel"}) {
-    RawCall call(running.channel(), std::string("/duet.v1.MotionSynthesis/") + method, bytes);
-    EXPECT_FALSE(call.Read().has_value()) << method;
-    EXPECT_EQ(Decode(call.Finish()).reason, "REQUEST_TOO_LARGE") << method;
-  }
-}
-
-TEST(ServiceRefusalTest, RejectsACompressedRequest) {
-  RunningService running;
-  TimedContext context;
-  context.set_compression_algorithm(GRPC_COMPRESS_GZIP);
-  const Reply reply = Call(running.stub(), SampleRequest(400), context);
-  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNIMPLEMENTED);
 }
 
 TEST(ServiceRefusalTest, FullQueueRejectsBeforeTheHeader) {
@@ -155,29 +136,25 @@ TEST(ServiceRefusalTest, RejectedRequestReleasesItsPlace) {
   EXPECT_TRUE(Call(running.stub(), SampleRequest()).status.ok());
 }
 
-class NotServingTest : public ::testing::TestWithParam<std::pair<Admission::State, std::string>> {};
-
-TEST_P(NotServingTest, EveryMethodIsUnavailableWithARetryDelay) {
+TEST(ServiceRefusalTest, EveryMethodOfAServerThatDoesNotServeIsUnavailableWithARetryDelay) {
   RunningService running;
-  running.admission().SetState(GetParam().first);
-  const auto expect_refused = [](const grpc::Status& status) {
-    const Refusal refusal = Decode(status);
-    EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
-    EXPECT_EQ(refusal.reason, GetParam().second);
-    EXPECT_EQ(refusal.retry_seconds, 1);
-  };
-  expect_refused(Call(running.stub(), SampleRequest()).status);
-  TimedContext list_context, get_context;
-  v1::ListModelsResponse list;
-  expect_refused(running.stub().ListModels(&list_context, v1::ListModelsRequest(), &list));
-  v1::GetModelResponse model;
-  expect_refused(running.stub().GetModel(&get_context, v1::GetModelRequest(), &model));
+  for (const auto& [state, reason] : {std::pair{Admission::State::kLoading, "SERVER_LOADING"},
+                                      {Admission::State::kDraining, "SERVER_DRAINING"}}) {
+    running.admission().SetState(state);
+    TimedContext list_context, get_context;
+    v1::ListModelsResponse list;
+    v1::GetModelResponse model;
+    for (const grpc::Status& status :
+         {Call(running.stub(), SampleRequest()).status,
+          running.stub().ListModels(&list_context, v1::ListModelsRequest(), &list),
+          running.stub().GetModel(&get_context, v1::GetModelRequest(), &model)}) {
+      const Refusal refusal = Decode(status);
+      EXPECT_EQ(refusal.code, StatusCode::kUnavailable);
+      EXPECT_EQ(refusal.reason, reason);
+      EXPECT_EQ(refusal.retry_seconds, 1);
+    }
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Both, NotServingTest,
-                         ::testing::Values(std::pair{Admission::State::kLoading, "SERVER_LOADING"},
-                                           std::pair{Admission::State::kDraining,
-                                                     "SERVER_DRAINING"}));
 
 TEST(ServiceEndTest, ModelFailureIsInternalWithDetailsOnlyInTheLog) {
   auto model = std::make_shared<FakeSynthesizer>();
@@ -206,7 +183,7 @@ bool ExpiresInLine(int seconds) {
   const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
   v1::SynthesizeResponse header;
   if (!reader->Read(&header)) return false;
-  EXPECT_LT(service.puppet.NextDeadline(), common::TimePoint::max());
+  EXPECT_LT(service.puppet.Oldest().deadline, common::TimePoint::max());
   const Reply reply = ReadAll(*reader);
   EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
   // The client's reset may overtake the deadline on a busy machine.
@@ -250,42 +227,30 @@ TEST(ServiceEndTest, AWindowDroppedByTheSchedulerEndsTheCall) {
   EXPECT_EQ(refusal.reason, "SERVER_DRAINING");
 }
 
-TEST(ServiceIdentityTest, KeepsTheCallersRequestIdAndTrace) {
-  RunningService running;
+TEST(ServiceRecordTest, SaysWhoCalledAndWhatTheCallDid) {
+  RunningService::Setup setup;
+  setup.client_key = "x-client";
+  PuppetService service(setup);
   const std::string trace = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01";
   TimedContext context;
   context.AddMetadata("x-request-id", "shot-42/take.3");
   context.AddMetadata("traceparent", trace);
-  const Reply reply = Call(running.stub(), SampleRequest(), context);
-  ASSERT_TRUE(reply.status.ok());
-  EXPECT_EQ(reply.messages.front().header().request_id(), "shot-42/take.3");
-  const metrics::CallRecord record = running.calls().WaitFor(1);
-  EXPECT_EQ(record.request_id, "shot-42/take.3");
-  EXPECT_EQ(record.traceparent, trace);
-  EXPECT_THAT(record.peer, HasSubstr("127.0.0.1"));
-}
-
-TEST(ServiceIdentityTest, ReplacesAnInvalidRequestId) {
-  RunningService running;
-  TimedContext context;
-  context.AddMetadata("x-request-id", std::string(129, 'x'));
-  const Reply reply = Call(running.stub(), SampleRequest(), context);
-  ASSERT_TRUE(reply.status.ok());
-  EXPECT_EQ(reply.messages.front().header().request_id().size(), 32u);
-}
-
-TEST(ServiceRecordTest, SaysWhatACallDid) {
-  PuppetService service;
-  TimedContext context;
+  context.AddMetadata("x-client", "studio");
   v1::SynthesizeRequest request = SampleRequest(46);
   request.set_priority(v1::PRIORITY_BULK);
   const auto reader = service.running.stub().Synthesize(&context, request);
   service.puppet.WaitForJobs(1);
-  EXPECT_EQ(service.puppet.NextPriority(), batching::Priority::kBulk);
+  EXPECT_EQ(service.puppet.Oldest().priority, batching::Priority::kBulk);
+  EXPECT_EQ(service.puppet.Oldest().client, "studio");
   service.puppet.RunNext();
-  ASSERT_TRUE(ReadAll(*reader).status.ok());
+  const Reply reply = ReadAll(*reader);
+  ASSERT_TRUE(reply.status.ok());
+  EXPECT_EQ(reply.messages.front().header().request_id(), "shot-42/take.3");
   const metrics::CallRecord record = service.running.calls().WaitFor(1);
   EXPECT_TRUE(record.status.ok());
+  EXPECT_EQ(record.request_id, "shot-42/take.3");
+  EXPECT_EQ(record.traceparent, trace);
+  EXPECT_THAT(record.peer, HasSubstr("127.0.0.1"));
   EXPECT_EQ(record.method.name, "Synthesize");
   EXPECT_EQ(record.model, "fake");
   EXPECT_EQ(record.version, 1);
@@ -299,6 +264,15 @@ TEST(ServiceRecordTest, SaysWhatACallDid) {
   EXPECT_GE(record.total_seconds, record.first_chunk_seconds);
 }
 
+TEST(ServiceRecordTest, ReplacesAnInvalidRequestId) {
+  RunningService running;
+  TimedContext context;
+  context.AddMetadata("x-request-id", std::string(129, 'x'));
+  const Reply reply = Call(running.stub(), SampleRequest(), context);
+  ASSERT_TRUE(reply.status.ok());
+  EXPECT_EQ(reply.messages.front().header().request_id().size(), 32u);
+}
+
 TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   RunningService running;
   TimedContext context;
@@ -306,8 +280,8 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   ASSERT_TRUE(running.stub().GetModel(&context, v1::GetModelRequest(), &response).ok());
   const engine::ModelDescription fake = FakeDescription();
   EXPECT_EQ(response.model().name(), "fake");
-  EXPECT_THAT(response.model().interaction_classes(), testing::ElementsAreArray(fake.classes));
-  EXPECT_THAT(response.model().joint_names(), testing::ElementsAreArray(fake.skeleton.joint_names));
+  EXPECT_THAT(response.model().interaction_classes(), ElementsAreArray(fake.classes));
+  EXPECT_THAT(response.model().joint_names(), ElementsAreArray(fake.skeleton.joint_names));
   EXPECT_EQ(response.model().bones_size(), 14);
   EXPECT_EQ(response.model().root_joint(), "torso");
   EXPECT_EQ(response.model().frame_rate_hz(), 15);
@@ -315,16 +289,14 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   EXPECT_TRUE(response.model().accepts_follower_start());
   EXPECT_FALSE(response.model().samples());
   EXPECT_EQ(response.model().description(), fake.description);
-  EXPECT_EQ(response.limits().min_frame_rate_hz(), 1);
-  EXPECT_EQ(response.limits().max_frame_rate_hz(), 240);
-  EXPECT_EQ(response.limits().min_frames(), 2u);
-  EXPECT_EQ(response.limits().max_duration_seconds(), 600);
-  EXPECT_EQ(response.limits().max_chunk_frames(), 240u);
-  EXPECT_EQ(response.limits().max_label_keyframes(), 4096u);
-  EXPECT_EQ(response.limits().max_abs_weight(), 2);
-  EXPECT_EQ(response.limits().max_variety(), 2);
-  EXPECT_EQ(response.limits().max_candidates(), 16u);
-  EXPECT_EQ(response.limits().max_request_bytes(), 32u << 20);
+  v1::RequestLimits limits;
+  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(
+      R"(min_frame_rate_hz: 1 max_frame_rate_hz: 240 min_frames: 2 max_duration_seconds: 600
+         max_chunk_frames: 240 max_label_keyframes: 4096 max_abs_weight: 2 max_variety: 2
+         max_candidates: 16 max_request_bytes: 33554432 max_delay_frames: 10 max_plan_frames: 30
+         max_constraints: 64)",
+      &limits));
+  EXPECT_EQ(response.limits().DebugString(), limits.DebugString());
 }
 
 }  // namespace

@@ -7,17 +7,18 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "model/motion/levelling.h"
+#include "model/engine/clip_synthesis.h"
 #include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/raw_call.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/server/support/timed_context.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 
@@ -34,6 +35,7 @@ using test::ReadAll;
 using test::Reply;
 using test::RunningService;
 using test::SampleRequest;
+using test::SamplingDescription;
 using test::SwayingMotion;
 using test::TimedContext;
 
@@ -42,6 +44,12 @@ std::shared_ptr<FakeSynthesizer> Echo() {
   auto model = std::make_shared<FakeSynthesizer>();
   model->answer = [](motion::Vec3 leader, absl::Span<const float>) { return leader; };
   return model;
+}
+
+RunningService::Setup Serving(std::shared_ptr<FakeSynthesizer> model) {
+  RunningService::Setup setup;
+  setup.model = std::move(model);
+  return setup;
 }
 
 float LargestDifference(const std::vector<float>& a,
@@ -72,9 +80,7 @@ TEST(SynthesizeTest, TheHeaderSaysWhoAnswersAndHow) {
 }
 
 TEST(SynthesizeTest, TheSummaryReportsWhatRemainsAtTheConstraints) {
-  RunningService::Setup setup;
-  setup.model = Echo();
-  RunningService running(std::move(setup));
+  RunningService running(Serving(Echo()));
   v1::SynthesizeRequest request = SampleRequest(200);
   const auto add = [&request](int joint, int frame, float above) {
     const float* at = request.leader().positions().data() + 3 * (15 * frame + joint);
@@ -194,41 +200,8 @@ TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
   EXPECT_EQ(*seen[0].partner_direction, (motion::Vec3{0, 0, -1}));
 }
 
-// Rotates the leader into the world of a camera whose vertical is `up`.
-void Tilt(motion::Vec3 up, v1::SynthesizeRequest* request) {
-  const motion::Levelling levelling(up, 0);
-  auto& positions = *request->mutable_leader()->mutable_positions();
-  for (int i = 0; i < positions.size(); i += 3) {
-    const motion::Vec3 tilted =
-        levelling.Invert({positions[i], positions[i + 1], positions[i + 2]});
-    positions[i] = tilted.x, positions[i + 1] = tilted.y, positions[i + 2] = tilted.z;
-  }
-  request->mutable_up()->set_x(up.x);
-  request->mutable_up()->set_y(up.y);
-  request->mutable_up()->set_z(up.z);
-}
-
-TEST(SynthesizeTest, ATiltedLeaderGetsTheLevelAnswerTiltedLikeTheLeader) {
-  RunningService running((RunningService::Setup()));
-  const std::vector<float> level = Call(running.stub(), SampleRequest(30)).Positions();
-  v1::SynthesizeRequest request = SampleRequest(30);
-  const motion::Vec3 up = {0.1F, 1, 0.15F};
-  Tilt(up, &request);
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  const std::vector<float> tilted = reply.Positions();
-  ASSERT_EQ(tilted.size(), level.size());
-  const motion::Levelling levelling(up, 0);
-  for (std::size_t i = 0; i < level.size(); i += 3) {
-    const motion::Vec3 back = levelling.Apply({tilted[i], tilted[i + 1], tilted[i + 2]});
-    ASSERT_LT(Distance(back, {level[i], level[i + 1], level[i + 2]}), 1e-4F) << i;
-  }
-}
-
 TEST(SynthesizeTest, RepliesWithTheRequestedJointsInTheirOrder) {
-  RunningService::Setup setup;
-  setup.model = Echo();
-  RunningService running(setup);
+  RunningService running(Serving(Echo()));
   v1::SynthesizeRequest request = SampleRequest(30);
   request.add_reply_joint_names("torso");
   request.add_reply_joint_names("head");
@@ -245,66 +218,52 @@ TEST(SynthesizeTest, RepliesWithTheRequestedJointsInTheirOrder) {
   }
 }
 
-using UnitAndAxis = std::tuple<v1::LengthUnit, v1::UpAxis, float>;  // the unit's length of a metre
-
-class CoordinatesTest : public ::testing::TestWithParam<UnitAndAxis> {};
-
-TEST_P(CoordinatesTest, ReplyHasTheLeadersUnitAxisAndOrigin) {
-  const auto [unit, up_axis, metre] = GetParam();
-  RunningService::Setup setup;
-  setup.model = Echo();
-  RunningService running(setup);
-  v1::SynthesizeRequest request = SampleRequest(120);
-  v1::Motion& leader = *request.mutable_leader();
-  leader.set_unit(unit);
-  leader.set_up_axis(up_axis);
-  for (float& value : *leader.mutable_positions()) value *= metre;
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  EXPECT_EQ(reply.messages.front().header().unit(), unit);
-  EXPECT_EQ(reply.messages.front().header().up_axis(), up_axis);
-  ASSERT_EQ(reply.Positions().size(), static_cast<std::size_t>(leader.positions_size()));
-  EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 1e-4F * metre);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Every, CoordinatesTest,
-    ::testing::Values(UnitAndAxis{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_UP, 1},
-                      UnitAndAxis{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Z_UP, 1},
-                      UnitAndAxis{v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_DOWN, 1},
-                      UnitAndAxis{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_UP, 1000},
-                      UnitAndAxis{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Z_UP, 1000},
-                      UnitAndAxis{v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Y_DOWN, 1000},
-                      UnitAndAxis{v1::LENGTH_UNIT_SBU_NORMALISED, v1::UP_AXIS_Y_DOWN, 1}));
-
-class RateTest : public ::testing::TestWithParam<double> {};
-
-TEST_P(RateTest, TheReplyIsAtTheLeadersRate) {
-  const double rate = GetParam();
-  RunningService::Setup setup;
-  setup.model = Echo();
-  RunningService running(setup);
-  v1::SynthesizeRequest request = SampleRequest(40);
-  v1::Motion& leader = *request.mutable_leader();
-  const int frames = std::max(2, static_cast<int>(rate * 7));
-  leader.set_frame_rate_hz(rate);
-  leader.set_frame_count(static_cast<uint32_t>(frames));
-  // A straight path: resampling there and back must not change it.
-  leader.clear_positions();
-  for (int frame = 0; frame < frames; ++frame) {
-    for (int i = 0; i < 45; ++i) {
-      leader.add_positions(static_cast<float>(0.1 * i + 0.3 * frame / rate));
-    }
+TEST(SynthesizeTest, ReplyHasTheLeadersUnitAxisAndOrigin) {
+  const std::tuple<v1::LengthUnit, v1::UpAxis, float> cases[] = {
+      {v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_UP, 1},
+      {v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Z_UP, 1},
+      {v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_DOWN, 1},
+      {v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Z_UP, 1000},
+      {v1::LENGTH_UNIT_SBU_NORMALISED, v1::UP_AXIS_Y_DOWN, 1}};
+  RunningService running(Serving(Echo()));
+  for (const auto& [unit, up_axis, metre] : cases) {
+    v1::SynthesizeRequest request = SampleRequest(120);
+    v1::Motion& leader = *request.mutable_leader();
+    leader.set_unit(unit);
+    leader.set_up_axis(up_axis);
+    for (float& value : *leader.mutable_positions()) value *= metre;
+    const Reply reply = Call(running.stub(), request);
+    ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+    EXPECT_EQ(reply.messages.front().header().unit(), unit);
+    EXPECT_EQ(reply.messages.front().header().up_axis(), up_axis);
+    ASSERT_EQ(reply.Positions().size(), static_cast<std::size_t>(leader.positions_size()));
+    EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 1e-4F * metre);
   }
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  EXPECT_EQ(reply.messages.front().header().frame_rate_hz(), rate);
-  ASSERT_EQ(reply.Positions().size(), static_cast<std::size_t>(leader.positions_size()));
-  // Within what the held last frame does to the spline: a part of a model frame's way.
-  EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 0.3F / 15);
 }
 
-INSTANTIATE_TEST_SUITE_P(Several, RateTest, ::testing::Values(1, 12.5, 15, 29.97, 60, 240));
+TEST(SynthesizeTest, ReplyIsAtTheLeadersRate) {
+  RunningService running(Serving(Echo()));
+  for (const double rate : {1.0, 12.5, 15.0, 29.97, 60.0, 240.0}) {
+    v1::SynthesizeRequest request = SampleRequest(40);
+    v1::Motion& leader = *request.mutable_leader();
+    const int frames = std::max(2, static_cast<int>(rate * 7));
+    leader.set_frame_rate_hz(rate);
+    leader.set_frame_count(static_cast<uint32_t>(frames));
+    // A straight path: resampling there and back must not change it.
+    leader.clear_positions();
+    for (int frame = 0; frame < frames; ++frame) {
+      for (int i = 0; i < 45; ++i) {
+        leader.add_positions(static_cast<float>(0.1 * i + 0.3 * frame / rate));
+      }
+    }
+    const Reply reply = Call(running.stub(), request);
+    ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+    EXPECT_EQ(reply.messages.front().header().frame_rate_hz(), rate);
+    ASSERT_EQ(reply.Positions().size(), static_cast<std::size_t>(leader.positions_size()));
+    // Within what the held last frame does to the spline: a part of a model frame's way.
+    EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 0.3F / 15);
+  }
+}
 
 TEST(SynthesizeTest, AnswersTenMinutesWithABoundedBuffer) {
   RunningService::Setup setup;
@@ -332,6 +291,124 @@ TEST(SynthesizeTest, AnswersManyCallsAtOnce) {
   for (const Reply& reply : replies) {
     EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
     EXPECT_EQ(reply.Positions(), expected.Positions());
+  }
+}
+
+// What seed, variety, candidates and clean_up do on their way to the network and back.
+
+// A request of several windows.
+v1::SynthesizeRequest Sampled(std::optional<uint64_t> seed, std::optional<float> variety) {
+  v1::SynthesizeRequest request = SampleRequest(120);
+  if (seed) request.set_seed(*seed);
+  if (variety) request.set_variety(*variety);
+  return request;
+}
+
+class SamplingTest : public ::testing::Test {
+ protected:
+  Reply Ask(std::optional<uint64_t> seed, std::optional<float> variety) {
+    Reply reply = Call(running_.stub(), Sampled(seed, variety));
+    EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
+    return reply;
+  }
+
+  std::shared_ptr<FakeSynthesizer> model_ =
+      std::make_shared<FakeSynthesizer>(SamplingDescription());
+  RunningService running_{Serving(model_)};
+};
+
+TEST_F(SamplingTest, SameSeedGivesTheSameBytesAndAnotherSeedDifferentOnes) {
+  const std::vector<float> seven = Ask(7, 1).Positions();
+  EXPECT_EQ(Ask(7, 1).Positions(), seven);
+  EXPECT_NE(Ask(8, 1).Positions(), seven);
+}
+
+TEST_F(SamplingTest, TheHeaderAndTheLogSayWhatWasUsed) {
+  const Reply given = Ask(18446744073709551615u, 0.25f);
+  EXPECT_EQ(given.messages.front().header().seed(), 18446744073709551615u);
+  EXPECT_EQ(given.messages.front().header().variety(), 0.25f);
+  const metrics::CallRecord record = running_.calls().WaitFor(1);
+  EXPECT_EQ(record.seed, 18446744073709551615u);
+  EXPECT_EQ(record.variety, 0.25f);
+  const Reply absent = Ask(std::nullopt, std::nullopt);
+  EXPECT_GT(absent.messages.front().header().seed(), 0u);
+  EXPECT_EQ(absent.messages.front().header().variety(), 1);
+}
+
+TEST_F(SamplingTest, CandidatesReachEveryWindow) {
+  std::vector<int> candidates;
+  model_->on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
+    for (const engine::SynthesisWindow* window : windows) {
+      candidates.push_back(window->options.sampling.candidates);
+    }
+  };
+  v1::SynthesizeRequest request = Sampled(7, 1);
+  request.set_candidates(4);
+  const Reply reply = Call(running_.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_THAT(candidates, AllOf(SizeIs(Ge(2u)), Each(4)));
+  EXPECT_EQ(reply.messages.front().header().candidates(), 4u);
+  EXPECT_EQ(running_.calls().WaitFor(1).candidates, 4);
+}
+
+TEST_F(SamplingTest, SummaryGradesTheFollower) {
+  const v1::SynthesisSummary summary = Ask(0, 1).messages.back().summary();
+  ASSERT_TRUE(summary.has_grade());
+  for (const float share : {summary.grade().twisted(), summary.grade().skating(),
+                            summary.grade().leader_skating(), summary.grade().overlapping()}) {
+    EXPECT_THAT(share, AllOf(Ge(0), Le(1)));
+  }
+  EXPECT_EQ(summary.grade().overlapping(), 0);
+  EXPECT_EQ(summary.grade().bad_runs_size(), 0);
+}
+
+TEST_F(SamplingTest, DeterministicModelIgnoresSeedAndVarietyAndEchoesThem) {
+  RunningService running;
+  const Reply plain = Call(running.stub(), Sampled(std::nullopt, std::nullopt));
+  const Reply seeded = Call(running.stub(), Sampled(7, 2));
+  ASSERT_TRUE(seeded.status.ok()) << seeded.status.error_message();
+  EXPECT_EQ(seeded.Positions(), plain.Positions());
+  EXPECT_EQ(seeded.messages.front().header().seed(), 7u);
+  EXPECT_EQ(seeded.messages.front().header().variety(), 2);
+}
+
+TEST_F(SamplingTest, SummaryAndLogReportUnfamiliarity) {
+  model_->unfamiliarity = [](const engine::ClipRequest& request) {
+    return request.leader.frame_count() / 100.0;
+  };
+  const v1::SynthesisSummary summary = Ask(0, 1).messages.back().summary();
+  ASSERT_TRUE(summary.has_unfamiliarity());
+  EXPECT_EQ(summary.unfamiliarity(), 1.2);
+  EXPECT_EQ(running_.calls().WaitFor(1).unfamiliarity, 1.2);
+}
+
+TEST(CleanUpTest, TheRequestWinsOverTheOperatorAndTheOperatorOverTheModel) {
+  const struct {
+    bool samples;
+    std::optional<bool> operators_choice;
+    v1::CleanUp wanted, used;
+  } cases[] = {{true, std::nullopt, v1::CLEAN_UP_UNSPECIFIED, v1::CLEAN_UP_ON},
+               {false, std::nullopt, v1::CLEAN_UP_UNSPECIFIED, v1::CLEAN_UP_OFF},
+               {true, false, v1::CLEAN_UP_UNSPECIFIED, v1::CLEAN_UP_OFF},
+               {false, true, v1::CLEAN_UP_UNSPECIFIED, v1::CLEAN_UP_ON},
+               {true, false, v1::CLEAN_UP_ON, v1::CLEAN_UP_ON},
+               {false, true, v1::CLEAN_UP_OFF, v1::CLEAN_UP_OFF}};
+  for (const auto& one : cases) {
+    const auto model =
+        std::make_shared<FakeSynthesizer>(one.samples ? SamplingDescription() : FakeDescription());
+    std::vector<std::optional<bool>> told;  // one window at a time is evaluated
+    model->on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
+      told.push_back(windows[0]->options.clean_up);
+    };
+    RunningService::Setup setup = Serving(model);
+    setup.clean_up = one.operators_choice;
+    RunningService running(setup);
+    v1::SynthesizeRequest request = SampleRequest(120);  // several windows
+    request.set_clean_up(one.wanted);
+    const Reply reply = Call(running.stub(), request);
+    ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+    EXPECT_EQ(reply.messages.front().header().clean_up(), one.used);
+    EXPECT_THAT(told, AllOf(SizeIs(Ge(2u)), Each(one.used == v1::CLEAN_UP_ON)));
   }
 }
 

@@ -57,25 +57,22 @@ absl::StatusOr<ValidatedLiveStart> Validate(
   return ValidateLiveStart(start, model, RequestLimits());
 }
 
-TEST(ValidateLiveStartTest, NewSession) {
-  const absl::StatusOr<ValidatedLiveStart> valid = Validate(New());
-  ASSERT_THAT(valid, IsOk());
-  EXPECT_EQ(valid->live.frame_rate_hz, 15);
-  EXPECT_EQ(valid->live.delay_frames, 2);
-  EXPECT_EQ(valid->plan_frames, 30);
-  EXPECT_EQ(valid->live.first_frame, 0);
-  EXPECT_EQ(valid->live.leader.frame_count(), 0);
-  EXPECT_EQ(valid->live.follower.frame_count(), 0);
-}
-
-TEST(ValidateLiveStartTest, ResumedSession) {
+TEST(ValidateLiveStartTest, NewAndResumedSessions) {
+  const absl::StatusOr<ValidatedLiveStart> fresh = Validate(New());
+  ASSERT_THAT(fresh, IsOk());
+  EXPECT_EQ(fresh->live.frame_rate_hz, 15);
+  EXPECT_EQ(fresh->live.delay_frames, 2);
+  EXPECT_EQ(fresh->plan_frames, 30);
+  EXPECT_EQ(fresh->live.first_frame, 0);
+  EXPECT_EQ(fresh->live.leader.frame_count(), 0);
   const v1::LiveStart start = Resumed();
-  const absl::StatusOr<ValidatedLiveStart> valid = Validate(start);
-  ASSERT_THAT(valid, IsOk());
-  EXPECT_EQ(valid->live.first_frame, 100);
-  EXPECT_EQ(valid->live.leader.frame_count(), 10);
-  ASSERT_EQ(valid->live.follower.frame_count(), 8);
-  EXPECT_EQ(valid->live.follower[7][2].y, start.history().follower_positions((7 * 15 + 2) * 3 + 1));
+  const absl::StatusOr<ValidatedLiveStart> resumed = Validate(start);
+  ASSERT_THAT(resumed, IsOk());
+  EXPECT_EQ(resumed->live.first_frame, 100);
+  EXPECT_EQ(resumed->live.leader.frame_count(), 10);
+  ASSERT_EQ(resumed->live.follower.frame_count(), 8);
+  EXPECT_EQ(resumed->live.follower[7][2].y,
+            start.history().follower_positions((7 * 15 + 2) * 3 + 1));
 }
 
 // The same with rotations: also frame 0 of both motions.
@@ -161,17 +158,11 @@ TEST(ValidateLiveStartTest, LimitsAreIncluded) {
   start.set_delay_frames(10);  // half a second
   start.set_candidates(16);
   EXPECT_THAT(Validate(start), IsOk());
-  EXPECT_THAT(Validate(Resumed()), IsOk());
-}
-
-TEST(ValidateLiveStartTest, EveryInvalidFieldIsNamed) {
-  v1::LiveStart start = Resumed();
-  start.set_plan_frames(31);
-  start.set_delay_frames(11);
-  start.mutable_history()->add_follower_positions(0);
-  EXPECT_THAT(Decode(Validate(start).status()).Fields(),
-              UnorderedElementsAre("start.plan_frames", "start.delay_frames",
-                                   "start.history.follower_positions"));
+  start = New();
+  *start.mutable_leader() = SampleRequest(150).leader();  // ten seconds
+  EXPECT_THAT(Validate(start), IsOk());
+  *start.mutable_leader() = SampleRequest(151).leader();
+  EXPECT_THAT(Decode(Validate(start).status()).Fields(), ElementsAre("start.leader.frame_count"));
 }
 
 // One way to spoil a good message, and the error, which names exactly this field.
@@ -254,14 +245,6 @@ TEST(ValidateLiveStartTest, ErrorNamesFieldsOfRotations) {
   ExpectRefused(cases, ResumedWithRotations(), [](const Start& start) { return Validate(start); });
 }
 
-TEST(ValidateLiveStartTest, MoreThanTenSecondsOfHistory) {
-  v1::LiveStart start = New();
-  *start.mutable_leader() = SampleRequest(151).leader();
-  EXPECT_THAT(Decode(Validate(start).status()).Fields(), ElementsAre("start.leader.frame_count"));
-  *start.mutable_leader() = SampleRequest(150).leader();
-  EXPECT_THAT(Validate(start), IsOk());
-}
-
 using Frames = v1::LeaderFrames;
 
 Frames GoodFrames(int count = 4) {
@@ -275,14 +258,6 @@ Frames GoodFrames(int count = 4) {
 absl::StatusOr<motion::Poses> Read(const Frames& frames) {
   return ReadLeaderFrames(frames, Validate(New())->reply, test::FakeDescription(), RequestLimits(),
                           /*check_size=*/false);
-}
-
-TEST(ReadLeaderFramesTest, ReadsUpToTenSeconds) {
-  for (const int count : {1, 4, 150}) {
-    const absl::StatusOr<motion::Poses> poses = Read(GoodFrames(count));
-    ASSERT_THAT(poses, IsOk());
-    EXPECT_EQ(poses->frame_count(), count);
-  }
 }
 
 TEST(ReadLeaderFramesTest, ErrorNamesFieldExpectedAndActualValue) {
@@ -300,14 +275,7 @@ TEST(ReadLeaderFramesTest, ErrorNamesFieldExpectedAndActualValue) {
       {[](Frames& f) { f.set_positions(50, kNan); }, "frames.positions[50]", "finite"},
   };
   ExpectRefused(cases, GoodFrames(), [](const Frames& frames) { return Read(frames); });
-}
-
-TEST(ReadLeaderFramesTest, EveryInvalidFieldIsNamed) {
-  Frames frames;
-  frames.set_frame_count(0xFFFFFFFF);
-  frames.set_first_frame(0xFFFFFFFF);
-  EXPECT_THAT(Decode(Read(frames).status()).Fields(),
-              UnorderedElementsAre("frames.frame_count", "frames.first_frame", "frames.positions"));
+  EXPECT_EQ(Read(GoodFrames(150))->frame_count(), 150);
 }
 
 using Change = v1::LabelChange;
@@ -324,23 +292,18 @@ Change GoodChange() {
   return change;
 }
 
-TEST(ReadLabelChangeTest, DefaultsToTheNextFrame) {
-  const absl::StatusOr<ValidatedLabelChange> valid = Read(GoodChange());
+TEST(ReadLabelChangeTest, DefaultsToTheNextFrameAndIncludesItsLimits) {
+  Change change = GoodChange();
+  absl::StatusOr<ValidatedLabelChange> valid = Read(change);
   ASSERT_THAT(valid, IsOk());
   EXPECT_EQ(valid->frame, kNext);
   EXPECT_EQ(valid->ease_frames, 0);
   EXPECT_EQ(*std::min_element(valid->weights.begin(), valid->weights.end()), -0.5F);
-}
-
-TEST(ReadLabelChangeTest, LimitsAreIncluded) {
-  Change change = GoodChange();
-  change.set_frame(kNext);
+  change.set_frame(kMaxLiveFrames - 1);
   change.set_ease_frames(150);
-  const absl::StatusOr<ValidatedLabelChange> valid = Read(change);
+  valid = Read(change);
   ASSERT_THAT(valid, IsOk());
   EXPECT_EQ(valid->ease_frames, 150);
-  change.set_frame(kMaxLiveFrames - 1);
-  EXPECT_THAT(Read(change), IsOk());
 }
 
 TEST(ReadLabelChangeTest, ErrorNamesFieldExpectedAndActualValue) {

@@ -19,15 +19,10 @@ absl::Status PuppetScheduler::CheckRoom(server::batching::Priority, const std::s
   return refusal_.value_or(absl::OkStatus());
 }
 
-void PuppetScheduler::Refuse(absl::Status status) {
+void PuppetScheduler::Refuse(absl::Status status, bool only_first_windows) {
   server::common::MutexLock lock(mutex_);
   refusal_ = std::move(status);
-}
-
-void PuppetScheduler::RefuseFirstWindows(absl::Status status) {
-  server::common::MutexLock lock(mutex_);
-  refusal_ = std::move(status);
-  takes_continuing_ = true;
+  takes_continuing_ = only_first_windows;
 }
 
 bool PuppetScheduler::RunNext() {
@@ -54,29 +49,9 @@ std::size_t PuppetScheduler::queued_windows() const {
   return jobs_.size();
 }
 
-server::batching::Priority PuppetScheduler::NextPriority() const {
+server::batching::WindowJob PuppetScheduler::Oldest() const {
   server::common::MutexLock lock(mutex_);
-  return jobs_.front().priority;
-}
-
-server::common::TimePoint PuppetScheduler::NextDeadline() const {
-  server::common::MutexLock lock(mutex_);
-  return jobs_.front().deadline;
-}
-
-int PuppetScheduler::NextCallWindows() const {
-  server::common::MutexLock lock(mutex_);
-  return jobs_.front().call_windows;
-}
-
-bool PuppetScheduler::NextContinuesCall() const {
-  server::common::MutexLock lock(mutex_);
-  return jobs_.front().continues_call;
-}
-
-std::string PuppetScheduler::NextClient() const {
-  server::common::MutexLock lock(mutex_);
-  return jobs_.front().client;
+  return jobs_.front();
 }
 
 server::batching::WindowJob PuppetScheduler::Take() {

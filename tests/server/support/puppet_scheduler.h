@@ -22,12 +22,9 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   absl::Status CheckRoom(server::batching::Priority priority,
                          const std::string& client) const override;
 
-  // Makes Submit and CheckRoom fail with this status.
-  void Refuse(absl::Status status);
-
-  // As a full queue: makes CheckRoom fail with this status, and Submit of the first window of a
-  // call.
-  void RefuseFirstWindows(absl::Status status);
+  // Makes Submit and CheckRoom fail with this status. With `only_first_windows`, as a full queue:
+  // Submit takes the later windows of a call.
+  void Refuse(absl::Status status, bool only_first_windows = false);
 
   // Waits for a job and evaluates the oldest, or drops it if cancelled. Returns whether it was
   // evaluated.
@@ -38,12 +35,8 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   void WaitForJobs(std::size_t count);
 
   std::size_t queued_windows() const override;
-  // Reads a field of the oldest job. There must be one.
-  server::batching::Priority NextPriority() const;
-  server::common::TimePoint NextDeadline() const;
-  int NextCallWindows() const;
-  bool NextContinuesCall() const;
-  std::string NextClient() const;
+  // A copy of the oldest job. There must be one.
+  server::batching::WindowJob Oldest() const;
 
  private:
   server::batching::WindowJob Take();

@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/batching/window_queue.h"
 #include "server/config/settings.h"
-#include "tests/server/support/timed_context.h"
+#include "tests/server/support/raw_call.h"
 
 namespace duet::test {
 

@@ -16,7 +16,7 @@
 #include "server/registry/model_registry.h"
 #include "server/service/admission.h"
 #include "server/service/motion_synthesis_service.h"
-#include "tests/server/support/recording_observer.h"
+#include "tests/server/support/fakes.h"
 #include "tests/support/fake_synthesizer.h"
 
 namespace duet::test {
@@ -50,7 +50,6 @@ class RunningService {
   std::string address() const;  // "127.0.0.1:PORT"
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
   RecordingObserver& calls() { return calls_; }
-  server::registry::ModelRegistry& registry() { return registry_; }
   server::service::Admission& admission() { return admission_; }
   server::service::MotionSynthesisService& service() { return *service_; }
 
