@@ -234,6 +234,19 @@ torch::Tensor ClassMeans(const std::vector<Follower>& followers, int64_t classes
   return sums / frames.clamp_min(1);
 }
 
+torch::Tensor Spreads(const std::vector<Follower>& followers, const torch::Tensor& means) {
+  torch::Tensor squares = torch::zeros({means.size(0)}), counts = torch::zeros({means.size(0)});
+  for (const Follower& follower : followers) {
+    const int64_t c = follower.interaction_class;
+    squares[c] += (follower.motion - means[c]).square().mean();
+    counts[c] += 1;
+  }
+  const torch::Tensor all = squares.sum() / counts.sum();
+  return torch::where(counts > 0, squares / counts.clamp_min(1), all)
+      .clamp_min(kSmallestVariance)
+      .sqrt();
+}
+
 torch::Tensor SymmetricRoot(const torch::Tensor& covariance) {
   const auto [values, vectors] = torch::linalg_eigh(covariance.to(torch::kFloat64), "L");
   const torch::Tensor roots = values.clamp_min(kSmallestVariance).sqrt();
@@ -259,6 +272,7 @@ FlowStatistics MeasureFollowers(const checkpoint::Manifest& manifest,
     add(follower, statistics.base_poses[follower.interaction_class], &from_mean);
     add(follower, follower.motion[0], &from_first);
   }
+  statistics.spreads = Spreads(followers, statistics.base_poses) / scale;
   const double count = static_cast<double>(followers.size());
   statistics.noise_roots =
       torch::stack({SymmetricRoot(from_mean / count), SymmetricRoot(from_first / count)});

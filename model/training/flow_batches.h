@@ -51,10 +51,14 @@ FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tenso
 // The tensors of the sampling generator that are measured on the training followers, each of them
 // counted as captured and mirrored.
 struct FlowStatistics {
-  torch::Tensor base_poses;  // [C, 3 J] mean pose of each class, metres
-  torch::Tensor
-      noise_roots;  // [2, 3 J, 3 J] symmetric roots of the mean square of the offsets, in
-                    // offset_scale metres: from the class's mean pose, from the first pose
+  // [C, 3 J] mean pose of each class, metres.
+  torch::Tensor base_poses;
+  // [2, 3 J, 3 J] symmetric roots of the mean square of the offsets, in offset_scale metres: from
+  // the class's mean pose, from the first pose.
+  torch::Tensor noise_roots;
+  // [C] root of the mean square of a class's offsets from its mean pose, in offset_scale metres. A
+  // class without followers has that of all.
+  torch::Tensor spreads;
 };
 
 // Requires a FlowArchitecture. `smoothing`: see FlowTraining::target_smoothing.

@@ -50,6 +50,8 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
       MeasureFollowers(manifest, dataset, train_, flow_.target_smoothing);
   generator_->SetMeasured(statistics.base_poses, statistics.noise_roots);
   base_poses_ = generator_->base_poses().clone();
+  class_weights_ = statistics.spreads.pow(-flow_.class_balance);
+  class_weights_ /= class_weights_.mean();
   Begin(generator_.get());
 }
 
@@ -69,6 +71,12 @@ torch::Tensor FlowTrainer::DrawSource(const FlowBatch& batch) const {
   return network::SourceNoise(
       architecture_.noise, generator_->noise_roots(), batch.input.known_count,
       network::RandomNumbers(batch.target, batch.live, architecture_.noise.frame_length));
+}
+
+torch::Tensor FlowTrainer::ClipWeights(const FlowBatch& batch) const {
+  const torch::Tensor labels = batch.labels.clamp_min(0);
+  const torch::Tensor more = class_weights_.to(labels.device()) - 1;
+  return 1 + labels.matmul(more) / labels.sum(1).clamp_min(1);
 }
 
 template <typename Add>
@@ -105,8 +113,9 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
   const torch::Tensor answers = network::PlainAnswers(generator_, architecture_, batch.input,
                                                       batch.labels, torch::stack(sources));
   torch::Tensor total = torch::zeros({}, batch.target.options());
+  const torch::Tensor clip_weights = ClipWeights(batch);
   const auto add = [&](double weight, const torch::Tensor& scores, double* mean) {
-    const torch::Tensor loss = scores.mean();
+    const torch::Tensor loss = (clip_weights * scores).mean();
     total = total + weight * loss;
     means_.Add(mean, loss);
   };
@@ -149,6 +158,7 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
                                    manifest_.model.skeleton.bones),
         &report->bone);
   }
+  losses = losses * ClipWeights(batch).square();  // of squared errors
   const torch::Tensor total = (losses / (1 - times).clamp_min(flow_.least_remaining)).mean();
   means_.Add(&report->generator, total);
   return total;

@@ -72,6 +72,8 @@ class FlowTrainer : public EpochTrainer {
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor DrawSource(const FlowBatch& batch) const;
+  // [N] the weight of each clip's loss, 1 without a label; see FlowTraining::class_balance.
+  torch::Tensor ClipWeights(const FlowBatch& batch) const;
   // The scores of feet and hands; see FlowTraining::Energy.
   template <typename Add>
   void AddBodyScores(const FlowBatch& batch, const torch::Tensor& answers, const Add& add,
@@ -84,7 +86,8 @@ class FlowTrainer : public EpochTrainer {
   std::optional<motion::JointPair> hands_;
   int64_t steps_per_epoch_;
   network::FlowGenerator generator_;
-  torch::Tensor base_poses_;  // the generator's, in the processor's memory
+  torch::Tensor base_poses_;     // the generator's, in the processor's memory
+  torch::Tensor class_weights_;  // [C] see FlowTraining::class_balance
   Optimiser optimiser_;
   LossMeans means_;
   int64_t drawn_epoch_ = -1;

@@ -147,6 +147,7 @@ void DeclareFlow(SettingFields* fields, FlowTraining* flow) {
   fields->Number("least_remaining", 1e-6, 1, &flow->least_remaining);
   fields->Number("noise_share", 0, 2, &flow->noise_share);
   if (fields->Has("kept_share")) fields->Share("kept_share", &flow->kept_share);
+  if (fields->Has("class_balance")) fields->Share("class_balance", &flow->class_balance);
 }
 
 void DeclareDrift(SettingFields* fields, FlowTraining::Drift* drift) {

@@ -68,6 +68,9 @@ struct FlowTraining {
   double least_remaining = 0.15;  // losses are divided by 1 - t, but at least by this
   double noise_share = 1;         // of the noise of training that the checkpoint's answers have
   double kept_share = 0;          // of the weights that the run began with, in the checkpoint's
+  // The power of the spread of its class by which a clip's loss is divided: 0 counts metres, 1
+  // counts errors relative to how far the followers of the class move.
+  double class_balance = 0;
 
   // Labels in training with frame_labels. By default every class of a frame has weight 1 and all
   // others 0.

@@ -237,5 +237,22 @@ TEST_F(FlowTrainerTest, MeasuresMeanPosesAndOffsetsOfTheFollowers) {
   }
 }
 
+TEST_F(FlowTrainerTest, ClassBalanceCountsErrorsRelativeToTheSpreadOfTheClass) {
+  // The people of the last class are much larger, so their errors are too.
+  for (dataset::Sequence& sequence : dataset_.sequences) {
+    if (sequence.interaction_class != 2) continue;
+    for (motion::Poses* poses : {&sequence.pair.leader.poses, &sequence.pair.follower.poses}) {
+      for (motion::Vec3& point : poses->all()) point = point * 10;
+    }
+  }
+  const torch::Tensor spreads = MeasureFollowers(manifest_, dataset_, AllOf(dataset_), 0).spreads;
+  EXPECT_NEAR((spreads[2] / spreads[0]).item<float>(), 10, 1);
+  FlowOf(&options_).energy.from = 0;
+  const double in_metres = Make().RunEpoch().reconstruction;
+  FlowOf(&options_).class_balance = 1;
+  // The weights of the classes are 1.4, 1.4 and .14.
+  EXPECT_LT(Make().RunEpoch().reconstruction, in_metres);
+}
+
 }  // namespace
 }  // namespace duet::training
