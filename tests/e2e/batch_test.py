@@ -1,7 +1,7 @@
 """duet batch against duet-server: data sets that are whole and the same however often anything is
-killed, what duet_motion.sets makes of them, shards of a job, refusals, and Ctrl-C.
+killed or damaged, what duet_motion.sets makes of them, shards of a job, refusals, and Ctrl-C.
 
-    batch_test.py [KILLS] [test...]     how often the kill test kills; 6
+    batch_test.py [KILLS] [test...]     how often each kill test kills; 6
 """
 
 import hashlib
@@ -11,17 +11,11 @@ import random
 import resource
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import time
 
 import tools
-
-try:
-    import numpy
-except ImportError:
-    numpy = None
 
 KILLS = int(sys.argv.pop(1)) if sys.argv[1:] and sys.argv[1].isdigit() else 6
 
@@ -55,6 +49,15 @@ def sets(*words):
                      env={**os.environ, "PYTHONPATH": str(tools.SOURCE / "client" / "python")})
 
 
+def change(path, at):
+    """Flips a bit of a file in place."""
+    with path.open("r+b") as file:
+        file.seek(at)
+        byte = file.read(1)
+        file.seek(at)
+        file.write(bytes([byte[0] ^ 1]))
+
+
 class BatchTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
@@ -68,9 +71,7 @@ class BatchTest(tools.ServedTest):
         cls.whole = cls.folder / "whole"
         recipe = cls.folder / "whole.textproto"
         recipe.write_text(RECIPE % "", encoding="utf-8")
-        made = tools.duet("batch", cls.leaders, "--recipe", recipe, "--out", cls.whole, "--server",
-                          cls.server.address, "--quiet")
-        assert made.returncode == 0, made.stderr
+        tools.run(*cls.command(cls.whole, recipe, "--quiet")).check_returncode()
 
     def recipe(self, more="", text=RECIPE):
         path = self.folder / f"{self.id().split('.')[-1]}.textproto"
@@ -80,9 +81,10 @@ class BatchTest(tools.ServedTest):
     def out(self, name="set"):
         return self.folder / f"{self.id().split('.')[-1]}-{name}"
 
-    def command(self, out, recipe, *flags, server=None, leaders=None):
-        return [tools.PROGRAMS / "duet", "batch", leaders or self.leaders, "--recipe", recipe,
-                "--out", out, "--server", server or self.server.address, *flags]
+    @classmethod
+    def command(cls, out, recipe, *flags, server=None, leaders=None):
+        return [tools.PROGRAMS / "duet", "batch", *([] if "--manifest" in flags else [leaders or cls.leaders]),
+                "--recipe", recipe, "--out", out, "--server", server or cls.server.address, *flags]
 
     def batch(self, out, recipe, *flags, code=0, **options):
         result = tools.run(*self.command(out, recipe, *flags, **options))
@@ -94,11 +96,37 @@ class BatchTest(tools.ServedTest):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
+    def check_whole(self, out):
+        self.verified(out)
+        self.assertEqual(digests(out), digests(self.whole))
+
+    def copy_of_whole(self):
+        """The undisturbed set under another name, and its motions."""
+        out = self.out()
+        shutil.copytree(self.whole, out)
+        return out, sorted(out.rglob("*.npy"))
+
+    def kill_often(self, command):
+        """Kills the command again and again, and then lets it end."""
+        dice, seconds = random.Random(), []
+        for _ in range(KILLS):
+            seconds.append(round(dice.uniform(0.01, 0.3), 3))
+            client = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            try:
+                client.wait(seconds[-1])
+            except subprocess.TimeoutExpired:
+                pass
+            client.kill()
+            client.wait()
+        result = tools.run(*command)
+        self.assertEqual(result.returncode, 0, f"{seconds} {result.stderr}")
+
     def test_folder_becomes_a_data_set(self):
         out = self.out()
-        self.batch(out, self.recipe())
+        self.batch(out, self.recipe("formats: FORMAT_GLB"))
         index = entries(out)
         self.assertEqual(len(index), 3 * (6 + 2) * 2)
+        self.assertEqual((out / "far" / "push-kick-s1.glb").read_bytes()[:4], b"glTF")
         self.assertEqual([entry["item"] for entry in index], list(range(len(index))))
         self.assertTrue((out / "far" / "push-kick-s1.npy").is_file())
         for entry in index:
@@ -131,7 +159,7 @@ class BatchTest(tools.ServedTest):
         whole, out = self.out("whole"), self.out()
         self.batch(whole, recipe)
         dice, server, kills = random.Random(), tools.Server("--reflection=false"), 0
-        seconds, unsettled = [], []
+        seconds = []
         try:
             while True:
                 client = subprocess.Popen(
@@ -146,7 +174,6 @@ class BatchTest(tools.ServedTest):
                     except subprocess.TimeoutExpired:
                         pass
                     kills += 1
-                    unsettled.append(not (out / "dataset.json").exists())
                     if kills % 3 == 0:
                         server.kill()
                     client.kill()
@@ -161,7 +188,6 @@ class BatchTest(tools.ServedTest):
             server.stop()
         self.assertEqual(digests(out), digests(whole), f"killed after {seconds}")
         self.verified(out)
-        print(f"{KILLS} kills, {sum(unsettled)} of them before the last item", file=sys.stderr)
 
     def test_server_restart_loses_nothing(self):
         recipe, out = self.recipe(), self.out()
@@ -180,20 +206,6 @@ class BatchTest(tools.ServedTest):
             server.stop()
         self.assertEqual(client.returncode, 0, said)
         self.assertEqual(digests(out), digests(self.whole))
-
-    def test_run_waits_for_a_late_server(self):
-        # Switches off gRPC's own reconnection attempts every five seconds: the client probes.
-        environment = dict(os.environ, GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS="0")
-        port = tools.free_port()
-        with socket.create_server(("127.0.0.1", port)) as listener:
-            client = subprocess.Popen(
-                self.command(self.out(), self.recipe(), "--limit", "2", "--quiet",
-                             server=f"127.0.0.1:{port}"), env=environment)
-            listener.settimeout(tools.RUN_SECONDS)
-            listener.accept()[0].close()
-        server = tools.Server(port=port)
-        self.addCleanup(server.stop)
-        self.assertEqual(client.wait(timeout=tools.RUN_SECONDS), 0)
 
     def test_set_without_items_is_pointed_out(self):
         result = self.batch(self.out(), self.recipe(), "--limit", "0")
@@ -214,16 +226,6 @@ class BatchTest(tools.ServedTest):
         self.assertEqual(list(out.rglob("*.npy")), [])
         self.batch(out, recipe)
         self.assertEqual(digests(out), digests(self.whole))
-
-    def test_pairs_as_gltf(self):
-        out = self.out()
-        self.batch(out, self.recipe("formats: FORMAT_GLB"), "--limit", "3")
-        made = entries(out)
-        self.assertEqual(len(made), 3)
-        for entry in made:
-            (glb,) = [file["path"] for file in entry["files"] if file["path"].endswith(".glb")]
-            self.assertEqual((out / glb).read_bytes()[:4], b"glTF")
-        self.verified(out)
 
     def test_interrupt_finishes_calls_in_progress(self):
         recipe, out = self.recipe("formats: FORMAT_BVH"), self.out()
@@ -272,20 +274,13 @@ class BatchTest(tools.ServedTest):
                 f"{self.leaders}/hug.bvh\tkik=1\t", f"{self.leaders}/hug.bvh\thug=1\tlft",
                 f"{self.leaders}/hug.bvh"]
         manifest.write_text("\n".join(rows) + "\n", encoding="utf-8")
-        command = [tools.PROGRAMS / "duet", "batch", "--manifest", manifest, "--recipe",
-                   self.recipe(), "--out", out, "--server", self.server.address]
-        for flags in ([], ["--dry-run"]):
-            result = tools.run(*command, *flags)
-            self.assertEqual(result.returncode, 42, result.stderr)
+        for flags in ((), ("--dry-run",)):
+            result = self.batch(out, self.recipe(), "--manifest", manifest, *flags, code=42)
             self.assertIn("3 bad lines", result.stderr)
-            self.assertIn(f'{manifest}:3: labels: expected classes of sbu@3', result.stderr)
-            self.assertIn(f'{manifest}:4: leader_side: expected left or right, got "lft"', result.stderr)
-            self.assertIn(f"{manifest}:5: columns: expected 3", result.stderr)
+            self.assertIn(f"{manifest}:3: labels: expected classes of sbu@3", result.stderr)
         self.assertFalse((out / "index.jsonl").exists())
-        self.assertFalse((out / ".duet-batch" / "job.json").exists())
         manifest.write_text("\n".join(rows[:2]) + "\n", encoding="utf-8")
-        corrected = tools.run(*command, "--limit", "1")  # the same --out
-        self.assertEqual(corrected.returncode, 0, corrected.stderr)
+        self.batch(out, self.recipe(), "--manifest", manifest, "--limit", "1")  # the same --out
 
     def test_a_tolerated_share_of_bad_leaders_lets_shards_merge(self):
         leaders, recipe = self.out("leaders"), self.recipe()
@@ -293,13 +288,9 @@ class BatchTest(tools.ServedTest):
         for name in ("kick", "hug", "push"):
             shutil.copy(tools.sample(name), leaders)
         (leaders / "broken.bvh").write_text("HIERARCHY", encoding="utf-8")
-        for number, (allowed, code) in enumerate((("0", 42), ("1", 0), ("24%", 42), ("25%", 0))):
-            with self.subTest(allowed):
-                for flags in ((), ("--dry-run",)):
-                    result = self.batch(self.out(number), recipe, "--allow-failed", allowed, *flags,
-                                        code=code, leaders=leaders)
-                self.assertEqual(len(entries(self.out(number))), 48)
-        result = self.batch(self.out(1), recipe, "--allow-failed", "1", leaders=leaders)
+        for allowed, code in (("0", 42), ("1", 0), ("24%", 42), ("25%", 0)):
+            for flags in (("--dry-run",), ()):
+                result = self.batch(self.out(1), recipe, "--allow-failed", allowed, *flags, code=code, leaders=leaders)
         self.assertIn("16 failed", result.stdout)
         self.assertIn("--allow-failed permits them", result.stderr)
         for index in range(2):
@@ -313,13 +304,11 @@ class BatchTest(tools.ServedTest):
         self.assertIn("--allow-failed: expected a number of leaders, or a share", wrong.stderr)
 
     def test_one_rate_for_all_items(self):
-        leaders, out = self.out("leaders"), self.out()
+        leaders, out, mixed = self.out("leaders"), self.out(), self.out("mixed")
         leaders.mkdir()
         for name, rate in (("kick", 30), ("hug", 120)):
-            made = tools.duet("convert", tools.sample(name), "--resample", rate, "--out",
-                              leaders / f"{name}.bvh")
-            self.assertEqual(made.returncode, 0, made.stderr)
-        mixed = self.out("mixed")
+            tools.duet("convert", tools.sample(name), "--resample", rate, "--out",
+                       leaders / f"{name}.bvh").check_returncode()
         self.batch(mixed, self.recipe(), leaders=leaders)
         described = json.loads((mixed / "dataset.json").read_text(encoding="utf-8"))
         self.assertNotIn("frame_rate_hz", described)
@@ -331,34 +320,18 @@ class BatchTest(tools.ServedTest):
             self.assertEqual((entry["frame_rate_hz"], entry["seed"]), (25, before["seed"]))
             self.assertAlmostEqual(entry["frames"] / 25, before["frames"] / before["frame_rate_hz"],
                                    delta=0.1)
-            if numpy is not None:
-                pair = numpy.load(out / entry["files"][0]["path"])
-                self.assertEqual(pair.shape, (2, entry["frames"], 15, 3))
-        another = self.batch(out, self.recipe("frame_rate_hz: 50"), code=42, leaders=leaders)
-        self.assertIn("was begun with another recipe", another.stderr)
-
-    def test_invalid_arguments_are_rejected(self):
-        for words, said in ((("--out", "x", "--recipe", "r"), "leaders or --manifest"),
-                            ((self.leaders, "--out", "x"), "--recipe"),
-                            ((self.leaders, "--recipe", "r"), "--out"),
-                            ((self.leaders, "--manifest", "m"), "excludes"),
-                            ((self.leaders, "--shard", "3/3"), "INDEX/COUNT")):
-            result = tools.duet("batch", *words)
-            self.assertEqual(result.returncode, 2, result.stderr)
-            self.assertIn(said, result.stderr)
 
     def test_gathered_shards_equal_a_single_run(self):
         recipe, out = self.recipe(), self.out()
         for index in range(2):
             self.batch(out, recipe, "--shard", f"{index}/3")
         self.batch(out, recipe, "--shard", "2/3", "--limit", "20")
-        # The shard that is not complete, and a file that was changed, are made by the run itself.
+        # The shard that is not complete, and a file that was changed, are made by the run itself, even if it is killed.
         changed = next((out / "shard-0-of-3").glob("*.npy"))
-        changed.write_bytes(changed.read_bytes()[:-1] + b"x")
-        gathered = self.batch(out, recipe, "--verify")
-        self.assertIn("gathered 3 of 3 shards, ", gathered.stderr)
-        self.assertEqual(digests(out), digests(self.whole))
-        self.verified(out)
+        change(changed, changed.stat().st_size // 2)
+        self.kill_often(self.command(out, recipe, "--verify"))
+        self.assertEqual(list(out.glob("shard-*")), [])
+        self.check_whole(out)
         again = self.batch(out, recipe)
         self.assertNotIn("gathered", again.stderr)
 
@@ -368,7 +341,7 @@ class BatchTest(tools.ServedTest):
             self.batch(out, recipe, "--shard", f"{index}/2")
         other = self.batch(out, self.recipe("formats: FORMAT_BVH"), code=42)
         self.assertIn("shard-0-of-2: was begun with another recipe", other.stderr)
-        recipe = self.recipe()
+        self.recipe()
         job = out / "shard-1-of-2" / ".duet-batch" / "job.json"
         begun = json.loads(job.read_text(encoding="utf-8"))
         begun["models"][0]["weights_sha256"] = "ab" * 32
@@ -379,30 +352,73 @@ class BatchTest(tools.ServedTest):
     def test_sets_are_split_and_packed(self):
         out = self.out()
         shutil.copytree(self.whole, out)
-        for words in (("split", out, "--validation", "0.4", "--test", "0.2"), ("pack", out, self.out("tar"), "--kind", "tar"),
-                      ("pack", out, self.out("npz"))):
+        for words in (("split", out, "--validation", "0.4", "--test", "0.2"), ("pack", out, self.out("tar"), "--kind", "tar")):
             made = sets(*words)
             self.assertEqual(made.returncode, 0, made.stderr)
-        for packed in (self.out("tar"), self.out("npz")):
-            self.assertEqual([{**entry, "shard": 0, "split": 0} for entry in entries(packed)],
-                             [{**entry, "shard": 0, "split": 0} for entry in entries(out)])
-            self.verified(packed)
+        packed = self.out("tar")
+        self.assertEqual([{**entry, "shard": 0, "split": 0} for entry in entries(packed)],
+                         [{**entry, "shard": 0, "split": 0} for entry in entries(out)])
+        self.verified(packed)
         self.verified(out)
 
-    def test_manifest_lists_leaders(self):
-        out, manifest = self.out(), self.out("list.tsv")
+    def test_manifest_lists_leaders_that_may_be_mended_later(self):
+        out, mended, manifest = self.out(), self.folder / "mended.bvh", self.out("list.tsv")
         manifest.write_text(f"leader\tlabels\tseed\ttake\n{self.leaders}/kick.bvh\thug=1\t5\tseven\n"
-                            f"{self.leaders}/none.bvh\thug=1\t\t\n", encoding="utf-8")
-        result = tools.duet("batch", "--manifest", manifest, "--recipe",
-                            self.recipe(text="output { formats: FORMAT_NPY %s }"), "--out", out,
-                            "--server", self.server.address)
-        self.assertEqual(result.returncode, 42, result.stderr)
+                            f"{mended}\thug=1\t\t\n", encoding="utf-8")
+        recipe = self.recipe(text="output { formats: FORMAT_NPY %s }")
+        result = self.batch(out, recipe, "--manifest", manifest, code=42)
         self.assertIn("1 done, 0 rejected, 1 failed", result.stdout)
+        self.assertIn("mended.bvh: no such file", result.stderr)
         (entry,) = entries(out)
         self.assertEqual((entry["seed"], entry["extra"]), (5, {"take": "seven"}))
         (failed,) = entries(out, "failed.jsonl")
         self.assertEqual(failed["error"]["code"], "NOT_FOUND")
-        self.assertIn("none.bvh: no such file", result.stderr)
+        shutil.copy(tools.sample("push"), mended)
+        self.batch(out, recipe, "--manifest", manifest, "--retry-failed")
+        self.assertEqual([entry["item"] for entry in entries(out)], [0, 1])
+        self.verified(out)
+
+    def test_damage_is_found_and_repaired_even_if_the_repair_is_killed(self):
+        out, files = self.copy_of_whole()
+        files[0].unlink()
+        change(files[1], files[1].stat().st_size // 2)
+        os.truncate(files[2], 1000)
+        change(out / ".duet-batch" / "journal", 3000)
+        change(out / "index.jsonl", 200)
+        os.truncate(out / "dataset.json", 100)
+        found = self.verified(out, 42).stderr
+        for problem in (f"{files[0]}: no such file", f"{files[1]}: was changed", f"{files[2]}: was changed",
+                        "dataset.json: expected a JSON object", "repeat the duet batch command with --verify"):
+            self.assertIn(problem, found)
+        self.kill_often(self.command(out, self.recipe(), "--verify"))
+        self.check_whole(out)
+
+    def test_a_damaged_identity_says_how_to_go_on(self):
+        out, _ = self.copy_of_whole()
+        job = out / ".duet-batch" / "job.json"
+        os.truncate(job, job.stat().st_size // 2)
+        refused = self.batch(out, self.recipe(), code=42)
+        self.assertIn(f"{job}: is damaged: ", refused.stderr)
+        self.assertIn("delete it and run the command that made the set again", refused.stderr)
+        job.unlink()
+        refused = self.batch(out, self.recipe(text=RECIPE.replace("seed: 7", "seed: 8")), code=42)
+        self.assertIn("as the set was begun with, got", refused.stderr)
+        self.batch(out, self.recipe())
+        self.check_whole(out)
+
+    def test_places_that_cannot_be_written_are_no_reason_to_try_again(self):
+        loop = self.out("loop")
+        loop.symlink_to(loop)
+        refused = self.batch(loop, self.recipe(), code=42)
+        self.assertIn("Too many levels of symbolic links", refused.stderr)
+
+    def test_rejected_recipe_does_not_block_another(self):
+        out = self.out()
+        self.batch(out, self.recipe(text="output { formats: FORMAT_NPY %s }"), code=42)  # has no reactions
+        self.batch(out, self.recipe())
+        self.check_whole(out)
+        result = self.batch(out, self.recipe(text=RECIPE.replace("seed: 7", "seed: 8")), code=42)
+        self.assertIn("modified: seed: 7 -> 8", result.stderr)
 
 
 if __name__ == "__main__":

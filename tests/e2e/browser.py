@@ -3,6 +3,7 @@
 import base64
 import contextlib
 import fcntl
+import io
 import json
 import os
 import select
@@ -12,6 +13,11 @@ import tempfile
 import time
 
 import tools
+
+try:
+    from PIL import Image
+except ImportError as error:
+    tools.skip(f"{error}; install the package python3-pil")
 
 # Software draws, so its commands need not cross to a process for graphics, which takes a fifth of a test's processor time.
 FLAGS = (
@@ -31,15 +37,32 @@ WITHOUT_ANTIALIASING = """{
 }"""
 
 
-MISSING = "no chromium; install the package chromium"
-
-
-def installed():
-    return shutil.which("chromium")
-
-
 def find_chromium():
-    return installed() or tools.skip(MISSING)
+    return shutil.which("chromium") or tools.skip("no chromium; install the package chromium")
+
+
+def write_pair(path):
+    """A pair as a .json file of Duet: a sample, and the same person who stands before it."""
+    tools.duet("convert", tools.sample("kick"), "--out", path).check_returncode()
+    motion = json.loads(path.read_text(encoding="utf-8"))
+    motion["follower"] = [[(x, y, z + 1.2) for x, y, z in pose] for pose in motion["leader"]]
+    path.write_text(json.dumps(motion), encoding="utf-8")
+    return motion
+
+
+class BrowserTest(tools.FolderTest):
+    """Tests that share a browser, whose pages are closed after each test, and a temporary folder."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open_page(self, url, **size):
+        page = self.browser.open(url, **size)
+        self.addCleanup(page.close)
+        return page
 
 
 class Browser:
@@ -213,5 +236,18 @@ class Page:
         self.next_frame()
 
     def picture(self):
-        return tools.Picture(base64.b64decode(
-            self.call("Page.captureScreenshot", format="png")["data"]), SCALE)
+        return Picture(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))
+
+
+class Picture:
+    """The pixels of a page."""
+
+    def __init__(self, png):
+        self._image = Image.open(io.BytesIO(png)).convert("RGB")
+
+    def count(self, is_wanted, left=0.25, right=0.9, top=0.1, bottom=0.85):
+        """Pixels of the stage (away from the panels) whose (red, green, blue) is wanted, in pixels of
+        the layout."""
+        width, height = self._image.size
+        stage = self._image.crop([int(share) for share in (left * width, top * height, right * width, bottom * height)])
+        return sum(is_wanted(*pixel) for pixel in stage.getdata()) / SCALE ** 2

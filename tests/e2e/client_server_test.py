@@ -103,75 +103,45 @@ class ClientServerTest(tools.ServedTest):
         towards = facing[0] * (leader[0] - torso[0]) + facing[1] * (leader[2] - torso[2])
         self.assertGreater(towards, 0, f"{name}: the follower turns its back")
 
-    def test_mix_differs_from_both_of_its_classes(self):
-        followers = {}
-        for name, labels in (("hug", ["hug=1"]), ("push", ["push=1"]),
-                             ("mix", ["hug=0.5", "push=0.5"])):
-            out = self.out(f"{name}.json")
-            self.good(tools.sample("hug"), *labels, out=out)
-            followers[name] = Pair(out).follower
-        def apart(a, b):
-            pairs = [(p, q) for f, g in zip(followers[a], followers[b]) for p, q in zip(f, g)]
-            return sum(distance(p, q) for p, q in pairs) / len(pairs)
-        self.assertGreater(apart("mix", "hug"), 0.01)
-        self.assertGreater(apart("mix", "push"), 0.01)
-
     def test_best_of_several_candidates(self):
-        changed = 0
-        for seed in range(4):
-            frames = []
-            for candidates in (1, 4, 4):
-                out = self.out(f"{seed}.{len(frames)}.json")
-                result = self.good(tools.sample("hug"), "hug=1", out=out,
+        followers = []
+        for candidates in (1, 4, 4):
+            for seed in range(4):
+                result = self.good(tools.sample("hug"), "hug=1", out=self.out("json"),
                                    more=("--json", "--seed", seed, "--candidates", candidates))
-                frames.append(Pair(out).follower)
+                followers.append(Pair(self.out("json")).follower)
                 report = json.loads(result.stdout)
                 self.assertEqual(report["candidates"], candidates)
                 for share in ("twisted", "skating", "leader_skating", "overlapping"):
                     self.assertTrue(0 <= report["grade"][share] <= 1, report["grade"])
-            self.assertEqual(frames[1], frames[2])
-            changed += frames[0] != frames[1]
-        self.assertGreater(changed, 0)  # the first sample is not the best for every seed
-        result = self.good(tools.sample("hug"), "hug=1", out=self.out("text.json"))
-        self.assertRegex(result.stdout, r"\n          graded: twisted \d+ %, both feet move \d+ % "
-                                        r"\(leader \d+ %\), overlapping \d+ %\n")
+        self.assertEqual(followers[4:8], followers[8:])
+        self.assertNotEqual(followers[:4], followers[4:8])  # the first sample is not the best for every seed
 
     def test_clean_up_can_be_switched_off(self):
-        frames, said = {}, {}
-        for choice, text in (("auto", ""), ("on", "clean_up: CLEAN_UP_ON"), ("off", "clean_up: CLEAN_UP_OFF")):
-            out, request = self.out(f"{choice}.json"), self.out(f"{choice}.textproto")
+        frames = {}
+        for text, cleaned_up in (("", True), ("clean_up: CLEAN_UP_ON", True), ("clean_up: CLEAN_UP_OFF", False)):
+            out, request = self.out("json"), self.out("textproto")
             request.write_text(text, encoding="utf-8")
-            result = self.good(tools.sample("kick"), "kick=1", out=out,
-                               more=("--json", "--request", request))
-            frames[choice], said[choice] = Pair(out).follower, json.loads(result.stdout)["cleaned_up"]
-        self.assertEqual(said, {"auto": True, "on": True, "off": False})  # the default model samples
-        apart = max(distance(p, q) for a, b in zip(frames["on"], frames["off"]) for p, q in zip(a, b))
-        self.assertGreater(apart, 1e-3)
-        for a, b in zip(frames["auto"], frames["on"]):
-            for p, q in zip(a, b):
-                self.assertLess(distance(p, q), 1e-4)
+            result = self.good(tools.sample("kick"), "kick=1", out=out, more=("--json", "--seed", "1", "--request", request))
+            self.assertEqual(json.loads(result.stdout)["cleaned_up"], cleaned_up)  # the default model samples
+            frames[text] = Pair(out).follower
+        auto, on, off = frames.values()
+        self.assertEqual(auto, on)
+        self.assertGreater(max(distance(p, q) for a, b in zip(on, off) for p, q in zip(a, b)), 1e-3)
 
     def test_every_format_has_the_same_follower(self):
         out = {extension: self.out(extension) for extension in ("json", "csv", "npy", "html", "bvh")}
         more = [flag for path in list(out.values())[1:] for flag in ("--out", path)]
-        result = self.good(tools.sample("push"), "push=1", out=out["json"], more=more)
+        self.good(tools.sample("push"), "push=1", out=out["json"], more=more)
         pair = Pair(out["json"])
         frames = len(pair.follower)
-
         npy = out["npy"].read_bytes()
-        self.assertTrue(npy.startswith(b"\x93NUMPY"))
         self.assertIn(f"(2, {frames}, {JOINTS}, 3)".encode(), npy[:128])
-        last = struct.unpack("<3f", npy[-12:])
-        self.assertLess(distance(last, pair.follower[-1][-1]), 1e-4)
-
+        self.assertLess(distance(struct.unpack("<3f", npy[-12:]), pair.follower[-1][-1]), 1e-4)
         for person in ("leader", "follower"):
-            path = out["bvh"].with_suffix(f".{person}.bvh")
-            self.assertIn(str(path), result.stdout)
-            self.assertEqual(bvh_frames(path), frames)
+            self.assertEqual(bvh_frames(out["bvh"].with_suffix(f".{person}.bvh")), frames)
         self.assertGreaterEqual(len(out["csv"].read_text(encoding="utf-8").splitlines()), frames)
-        page = out["html"].read_text(encoding="utf-8")
-        self.assertIn(f'"frames":{frames}', page)
-        self.assertNotIn("://cdn", page)
+        self.assertIn(f'"frames":{frames}', out["html"].read_text(encoding="utf-8"))
         # No other file is left.
         mine = {path.name for path in self.folder.glob(out["json"].stem + ".*")}
         self.assertEqual(len(mine), 6, mine)

@@ -6,9 +6,7 @@ DUET_SERVER, as they say."""
 import importlib.util
 import pathlib
 import re
-import shutil
 import tempfile
-import unittest
 
 import guides
 import tools

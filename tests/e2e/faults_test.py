@@ -17,7 +17,8 @@ import unittest
 import http2_client as http2
 import reset_flood
 import tools
-from hostile_client_test import SYNTHESIZE, ended, handled, in_flight, small_request
+from hostile_client_test import SYNTHESIZE, ended, handled, in_flight
+from wire.corpus import standing
 
 SILENT = 1000
 FLOOD = 5000
@@ -62,9 +63,6 @@ class LoggingServer:
         self.address = f"127.0.0.1:{serving['port']}"
         self.metrics_port = serving["metrics_port"]
 
-    def page(self, path):
-        return tools.page(self.metrics_port, path)
-
     def lines(self):
         """What it has written in whole, each line as an object, or as bytes where it is none."""
         def parsed(line):
@@ -86,7 +84,7 @@ class LoggingServer:
         resource.prlimit(self._process.pid, resource.RLIMIT_FSIZE, (most, resource.RLIM_INFINITY))
 
     def lost_lines(self):
-        return int(re.search(r"^duet_log_lines_dropped_total (\d+)", self.page("/metrics")[1],
+        return int(re.search(r"^duet_log_lines_dropped_total (\d+)", tools.page(self.metrics_port, "/metrics")[1],
                              re.MULTILINE)[1])
 
     def stop(self):
@@ -99,13 +97,6 @@ class LoggingServer:
     def kill(self):
         self._process.kill()
         self._process.wait(timeout=tools.STOP_SECONDS)
-
-
-def started(server):
-    """How many Synthesize calls have begun."""
-    found = re.search(r'grpc_server_started_total\{grpc_method="Synthesize".*\} (\d+)',
-                      server.page("/metrics")[1])
-    return int(found[1]) if found else 0
 
 
 def descriptors(server):
@@ -164,7 +155,7 @@ class FaultsTest(unittest.TestCase):
     def test_killed_client_releases_its_place(self):
         server = self.serve()
         request = self.folder / "request"
-        request.write_bytes(small_request(self.folder, frames=300))
+        request.write_bytes(standing(300))
         reader = subprocess.Popen(
             [sys.executable, "-c", READER, str(server.port), str(WINDOW_BYTES), SYNTHESIZE,
              str(request)],
@@ -208,7 +199,7 @@ class FaultsTest(unittest.TestCase):
         tools.wait_until(lambda: self.synthesize(server.address, self.folder / "other.npy")
                          .returncode == 0, "others are answered")
         tools.wait_until(lambda: "Canceled" in handled(server) and in_flight(server) == 0
-                         and started(server) == sum(handled(server).values()),
+                         and tools.started(server, "Synthesize") == sum(handled(server).values()),
                          "every call is over")
         self.assertLessEqual(set(handled(server)), {"Canceled", "ResourceExhausted", "OK"})
 

@@ -43,8 +43,9 @@ class FlagsTest(unittest.TestCase):
         version = re.search(r"project\(duet VERSION ([\d.]+)", text)[1]
         for program in PROGRAMS + ("duet-server",):
             result = tools.run(tools.PROGRAMS / program, "--version")
-            self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertEqual(result.stdout, f"{program} {version}\n")
+            self.assertEqual((result.returncode, result.stdout), (0, f"{program} {version}\n"), result.stderr)
+        with tools.running_server(metrics="127.0.0.1:0") as server:
+            self.assertIn(f'\nduet_build_info{{version="{version}"}} 1\n', server.page("/metrics")[1])
 
     def test_output_that_cannot_be_written_is_an_error(self):
         commands = [(program, "--help") for program in PROGRAMS + ("duet-server",)]

@@ -1,18 +1,12 @@
 """A client that shares no code with ours: Python's grpcio, with stubs generated from the protos."""
 
 import math
-import tempfile
 
+import stubs
 import tools
+from live_clients import person
+from stubs import grpc, motion_pb2, synthesis_pb2, synthesis_pb2_grpc
 
-try:
-    import grpc
-except ImportError as error:
-    tools.skip(f"{error}; install the package python3-grpcio")
-
-PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
-          "duet/v1/live.proto", "duet/v1/synthesis.proto",
-          "duet/rpc/v1/status.proto")
 FRAMES = 40
 
 
@@ -25,14 +19,12 @@ class ForeignClientTest(tools.ServedTest):
         cls.stub = synthesis_pb2_grpc.MotionSynthesisStub(channel)
 
     def request(self):
-        """A standing leader who raises a hand; metres, z up, as Blender would send it."""
-        model = self.stub.GetModel(synthesis_pb2.GetModelRequest(), timeout=tools.RUN_SECONDS).model
-        leader = motion_pb2.Motion(joint_names=model.joint_names, frame_rate_hz=24,
-                                   unit=motion_pb2.LENGTH_UNIT_METRES,
+        """A leader who sways; metres, z up, as Blender would send it."""
+        leader = motion_pb2.Motion(joint_names=tools.JOINTS, frame_rate_hz=24, unit=motion_pb2.LENGTH_UNIT_METRES,
                                    up_axis=motion_pb2.UP_AXIS_Z_UP, frame_count=FRAMES)
-        for frame in range(FRAMES):
-            for joint in model.joint_names:
-                leader.positions.extend(standing(joint, frame / FRAMES))
+        for pose in person(tools.JOINTS, 24, FRAMES):
+            for x, y, z in zip(pose[0::3], pose[1::3], pose[2::3]):
+                leader.positions.extend((x, -z, y))
         request = synthesis_pb2.SynthesizeRequest(leader=leader)
         request.label_vector.weights.add(interaction_class="punch", weight=1)
         return request
@@ -93,19 +85,14 @@ class ForeignClientTest(tools.ServedTest):
         with self.assertRaises(grpc.RpcError) as caught:
             list(self.stub.Synthesize(request, timeout=tools.RUN_SECONDS))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
-        trailers = dict(caught.exception.trailing_metadata())
-        status = status_pb2.Status.FromString(trailers["grpc-status-details-bin"])
-        self.assertEqual(status.code, grpc.StatusCode.INVALID_ARGUMENT.value[0])
-        details = {detail.type_url.rsplit("/", 1)[1]: detail.value for detail in status.details}
-        violations = status_pb2.BadRequest.FromString(details["google.rpc.BadRequest"])
-        fields = {violation.field for violation in violations.field_violations}
+        details = stubs.details_of(caught.exception)
+        violations = details["BadRequest"].field_violations
+        fields = {violation.field for violation in violations}
         self.assertLessEqual({"leader.frame_rate_hz", "leader.positions[5]"}, fields)
         self.assertTrue(any(field.startswith("label_vector.weights[1]") for field in fields), fields)
-        for violation in violations.field_violations:
+        for violation in violations:
             self.assertRegex(violation.description, "^expected .*, got ")
-        info = status_pb2.ErrorInfo.FromString(details["google.rpc.ErrorInfo"])
-        self.assertEqual(info.domain, "duet.v1")
-        self.assertEqual(info.reason, "INVALID_REQUEST")
+        self.assertEqual((details["ErrorInfo"].domain, details["ErrorInfo"].reason), ("duet.v1", "INVALID_REQUEST"))
 
     def test_an_unknown_model_is_not_found(self):
         request = synthesis_pb2.GetModelRequest()
@@ -115,21 +102,5 @@ class ForeignClientTest(tools.ServedTest):
         self.assertEqual(caught.exception.code(), grpc.StatusCode.NOT_FOUND)
 
 
-def standing(joint, phase):
-    """x (left), y (back), z (up) of a joint of a person; the right hand rises with `phase`."""
-    if joint == "right_hand":
-        return (-0.3, -0.4 * phase, 0.8 + 0.6 * phase)
-    side = 1 if joint.startswith("left") else -1 if joint.startswith("right") else 0
-    part = joint.split("_")[-1]
-    across, up = {"head": (0, 1.6), "neck": (0, 1.4), "torso": (0, 1.15), "shoulder": (0.17, 1.38),
-                  "elbow": (0.25, 1.1), "hand": (0.27, 0.85), "hip": (0.1, 0.92),
-                  "knee": (0.11, 0.5), "foot": (0.12, 0.08)}[part]
-    return (side * across, 0.0, up)
-
-
 if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as stubs:
-        tools.generate_stubs(stubs, *PROTOS)
-        from duet.rpc.v1 import status_pb2
-        from duet.v1 import motion_pb2, synthesis_pb2, synthesis_pb2_grpc
-        tools.main()
+    tools.main()

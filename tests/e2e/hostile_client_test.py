@@ -1,7 +1,6 @@
 """Clients that keep to the protocol and mean no good, against the real server: it stays small, and
 answers others."""
 
-import pathlib
 import re
 import socket
 import subprocess
@@ -11,17 +10,14 @@ import unittest
 
 import http2_client as http2
 import tools
+from wire.corpus import standing
 
 SYNTHESIZE = "/duet.v1.MotionSynthesis/Synthesize"
-LIST_MODELS = "/duet.v1.MotionSynthesis/ListModels"
 HOSTILE = "127.0.0.2"
-MEGABYTE = 1_000_000
 
 
 def in_flight(server):
-    found = re.search(r'duet_calls_in_flight\{method="Synthesize"\} (\d+)',
-                      server.page("/metrics")[1])
-    return int(found[1]) if found else 0
+    return server.figure(r'duet_calls_in_flight\{method="Synthesize"\}')
 
 
 def ended(server):
@@ -35,36 +31,6 @@ def handled(server):
     lines = re.findall(r'grpc_server_handled_total\{grpc_code="(\w+)",grpc_method="Synthesize".*\} '
                        r"(\d+)", server.page("/metrics")[1])
     return {code: int(count) for code, count in lines}
-
-
-def peak_megabytes(server):
-    status = pathlib.Path(f"/proc/{server.pid}/status").read_text(encoding="utf-8")
-    return int(re.search(r"VmHWM:\s+(\d+)", status)[1]) * 1024 / MEGABYTE
-
-
-def upload(connection, payload):
-    """Sends a whole message, as fast as the server takes it, and reads to the end of the call."""
-    stream = connection.open(SYNTHESIZE)
-    body = http2.message(payload)
-    stream_credit, sent, over = 65535, 0, False
-    frames = connection.frames()
-    while not over:
-        while sent < len(body) and (room := min(16384, connection.credit, stream_credit)) > 0:
-            piece = body[sent:sent + room]
-            sent += len(piece)
-            connection.credit -= len(piece)
-            stream_credit -= len(piece)
-            flags = http2.END_STREAM if sent == len(body) else 0
-            connection.socket.sendall(http2.frame(http2.DATA, flags, stream, piece))
-        kind, flags, number, payload = next(frames)
-        if kind == http2.WINDOW_UPDATE and number == stream:
-            stream_credit += int.from_bytes(payload, "big")
-        if kind == http2.SETTINGS and not flags & http2.ACK:
-            for at in range(0, len(payload), 6):
-                if int.from_bytes(payload[at:at + 2], "big") == http2.SETTING_INITIAL_WINDOW:
-                    stream_credit += int.from_bytes(payload[at + 2:at + 6], "big") - 65535
-        over = number == stream and (kind == http2.RST_STREAM or
-                                     bool(flags & http2.END_STREAM and kind == http2.HEADERS))
 
 
 class HostileClientTest(unittest.TestCase):
@@ -86,8 +52,7 @@ class HostileClientTest(unittest.TestCase):
         server = self.serve()
         # 16 million empty keyframes' worth of bytes: over 1 GB each, if they were parsed.
         bomb = b"\x22\x02\x12\x00" * (31 * (1 << 20) // 4)
-        senders = [threading.Thread(target=upload, args=(self.connect(server), bomb))
-                   for _ in range(2)]
+        senders = [threading.Thread(target=self.connect(server).upload, args=(SYNTHESIZE, bomb)) for _ in range(2)]
         for sender in senders:
             sender.start()
         self.assert_others_are_answered(server)
@@ -97,16 +62,14 @@ class HostileClientTest(unittest.TestCase):
         for code, message in ended(server):
             self.assertEqual(code, "INVALID_ARGUMENT")
             self.assertIn("label_keyframes: expected at most 65536 values", message)
-        self.assertLess(peak_megabytes(server), 600 * tools.MEMORY_FACTOR)
+        self.assertLess(tools.peak_memory(server), 600_000_000 * tools.MEMORY_FACTOR)
 
     def test_stalled_readers_release_their_places(self):
         server = self.serve("--write-timeout-seconds", "0.5")
         connection = self.connect(server, window=0)
         # Malformed requests end at once: their refusal needs no window. These are good.
-        with tempfile.TemporaryDirectory() as folder:
-            request = small_request(folder)
         for _ in range(200):
-            connection.open(SYNTHESIZE, request)
+            connection.open(SYNTHESIZE, standing(20))
         self.assert_others_are_answered(server)
         tools.wait_until(lambda: sum(handled(server).values()) == 200, "all have ended")
         # On a slow machine the first have given their places back before the last come.
@@ -151,9 +114,7 @@ class HostileClientTest(unittest.TestCase):
     def test_deadline_beyond_the_clocks_range_is_accepted(self):
         server = self.serve()
         connection = self.connect(server)
-        with tempfile.TemporaryDirectory() as folder:
-            request = small_request(folder)
-        connection.open(SYNTHESIZE, request, extra=[("grpc-timeout", "99999999H")])
+        connection.open(SYNTHESIZE, standing(20), extra=[("grpc-timeout", "99999999H")])
         for kind, flags, _, _ in connection.frames():
             if kind == http2.HEADERS and flags & http2.END_STREAM:
                 break
@@ -187,25 +148,6 @@ class RestartTest(unittest.TestCase):
                 self.addCleanup(again.stop)
                 _, error = call.communicate(timeout=tools.RUN_SECONDS)
             self.assertEqual(call.returncode, 0, error)
-
-
-def small_request(folder, frames=20):
-    """A request of some kilobytes that the default model answers."""
-    text = pathlib.Path(folder) / "request.txtpb"
-    joints = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow "
-              "right_hand left_hip left_knee left_foot right_hip right_knee right_foot").split()
-    names = "".join(f'joint_names: "{joint}" ' for joint in joints)
-    positions = "".join(f"positions: {0.1 * (i % 3) + 0.05 * (i // 3 % 15):.3f} "
-                        for i in range(frames * 45))
-    text.write_text(
-        f"leader {{ {names} frame_rate_hz: 15 unit: LENGTH_UNIT_METRES up_axis: UP_AXIS_Y_UP "
-        f"frame_count: {frames} {positions} }} "
-        'label_vector { weights { interaction_class: "punch" weight: 1 } }', encoding="utf-8")
-    with text.open(encoding="utf-8") as message:
-        return subprocess.run(
-            ["protoc", f"-I{tools.SOURCE / 'proto'}", "--encode=duet.v1.SynthesizeRequest",
-             "duet/v1/synthesis.proto"], stdin=message, stdout=subprocess.PIPE,
-            check=True).stdout
 
 
 if __name__ == "__main__":

@@ -25,8 +25,8 @@ def literal(name, value):
     return text
 
 
-def request_headers(path, extra=()):
-    fields = [(":method", "POST"), (":scheme", "http"), (":path", path), (":authority", "test"),
+def request_headers(path, extra=(), scheme="http"):
+    fields = [(":method", "POST"), (":scheme", scheme), (":path", path), (":authority", "test"),
               ("content-type", "application/grpc"), ("te", "trailers"), *extra]
     return b"".join(literal(*field) for field in fields)
 
@@ -34,6 +34,12 @@ def request_headers(path, extra=()):
 def message(payload):
     """A gRPC message as it travels."""
     return b"\x00" + struct.pack(">I", len(payload)) + payload
+
+
+def initial_window(settings):
+    """How many bytes a stream may begin with."""
+    values = dict(struct.iter_unpack(">HI", settings))
+    return values.get(SETTING_INITIAL_WINDOW, 65535)
 
 
 class Connection:
@@ -70,6 +76,26 @@ class Connection:
                 data += frame(DATA, END_STREAM if last else 0, stream, piece)
         self.socket.sendall(data)
         return stream
+
+    def upload(self, path, payload, end=True):
+        """Sends a message as fast as the server takes it, all but its last byte unless `end`; then reads until the call
+        or the connection is over."""
+        stream, body = self.open(path), message(payload)
+        sent, stop, room_of_stream = 0, len(body) - (not end), 65535
+        frames = self.frames()
+        while True:
+            while (room := min(16384, stop - sent, self.credit, room_of_stream)) > 0:
+                piece, sent = body[sent:sent + room], sent + room
+                self.credit -= room
+                room_of_stream -= room
+                self.socket.sendall(frame(DATA, END_STREAM if sent == len(body) else 0, stream, piece))
+            kind, flags, number, payload = next(frames, (RST_STREAM, 0, stream, b""))
+            if kind == SETTINGS and not flags & ACK:
+                room_of_stream += initial_window(payload) - 65535
+            if number == stream and kind == WINDOW_UPDATE:
+                room_of_stream += int.from_bytes(payload, "big")
+            if number == stream and (kind == RST_STREAM or kind == HEADERS and flags & END_STREAM):
+                return
 
     def frames(self):
         """What the server sends, as (kind, flags, stream, payload), until it ends or a time-out."""

@@ -81,13 +81,6 @@ class KubernetesTest(unittest.TestCase):
                     sleep + int(settings["drain_seconds"]) + int(settings["grace_seconds"])
                     + 10)  # until a server that hangs exits by itself
 
-    def test_server_requests_as_many_whole_cores_as_its_limit(self):
-        for overlay in OVERLAYS:
-            for _, template in pods_of(objects_of(f"overlays/{overlay}")):
-                resources = template["spec"]["containers"][0]["resources"]
-                self.assertEqual(resources["requests"], resources["limits"])
-                self.assertRegex(resources["limits"]["cpu"], r"^\d+$")
-
     def test_only_overlays_without_an_autoscaler_state_the_number_of_pods(self):
         """Where both do, each apply sets back what the autoscaler has chosen."""
         for overlay in OVERLAYS:
@@ -117,17 +110,6 @@ class KubernetesTest(unittest.TestCase):
             for other in pods:
                 self.assertEqual(selected(selector, labels[other]), track == other)
         self.assertNotEqual(pods["stable"]["metadata"]["name"], pods["canary"]["metadata"]["name"])
-
-    def test_referenced_names_exist(self):
-        for folder in FOLDERS:
-            objects = objects_of(folder)
-            # The run that gathers the shards uses what was applied with them.
-            before = objects_of("batch") if folder == "batch/gather" else []
-            there = {(one["kind"], one["metadata"]["name"]) for one in (*before, *objects)}
-            for name, template in pods_of(objects):
-                for volume in template["spec"].get("volumes", []):
-                    if "configMap" in volume:
-                        self.assertIn(("ConfigMap", volume["configMap"]["name"]), there, name)
 
     def test_every_completion_is_a_shard(self):
         job = of_kind(objects_of("batch"), "Job")[0]["spec"]

@@ -1,22 +1,13 @@
 """duet live from a file and from lines of JSON, with a real server."""
 
 import json
-import pathlib
 import signal
 import subprocess
-import tempfile
 import time
-import unittest
 
 import tools
 
 FRAMES = 91  # of the sample
-
-
-def live(*arguments, lines=None):
-    """Runs duet live, with lines of JSON as standard input."""
-    text = None if lines is None else "".join(json.dumps(line) + "\n" for line in lines)
-    return tools.run(tools.PROGRAMS / "duet", "live", "--label", "hug=1", *arguments, input=text)
 
 
 def frames_of(text):
@@ -44,31 +35,25 @@ def rest_of(process):
     return output, errors
 
 
-class LiveCliTest(unittest.TestCase):
+class LiveCliTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.folder = tempfile.TemporaryDirectory()
-        pair = pathlib.Path(cls.folder.name) / "pair.json"
-        result = tools.duet("synthesize", "--server", cls.server.address, "--leader",
-                            tools.sample("hug"), "--label", "hug=1", "--quiet", "--out", pair)
-        assert result.returncode == 0, result.stderr
-        motion = json.loads(pair.read_text(encoding="utf-8"))
+        super().setUpClass()
+        tools.duet("convert", tools.sample("hug"), "--out", cls.folder / "hug.json").check_returncode()
+        motion = json.loads((cls.folder / "hug.json").read_text(encoding="utf-8"))
         cls.leader = [{"joints": motion["joint_names"], "rate": 30, "unit": "m", "up": "y"}]
         cls.leader += [{"positions": positions} for positions in motion["leader"]]
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-        cls.server.stop()
-
-    def run_live(self, *arguments, lines=None, code=0):
-        result = live("--server", self.server.address, *arguments, lines=lines)
-        self.assertEqual(result.returncode, code, result.stderr)
+    def run_live(self, *arguments, lines=None):
+        """Runs duet live, with lines of JSON as standard input."""
+        text = None if lines is None else "".join(json.dumps(line) + "\n" for line in lines)
+        result = tools.run(tools.PROGRAMS / "duet", "live", "--label", "hug=1", "--server", self.server.address,
+                           *arguments, input=text)
+        self.assertEqual(result.returncode, 0, result.stderr)
         return result
 
     def test_a_file_is_played_in_real_time(self):
-        follower = pathlib.Path(self.folder.name) / "follower.bvh"
+        follower = self.folder / "follower.bvh"
         page = follower.with_name("pair.html")
         begin = time.monotonic()
         result = self.run_live("--from", tools.sample("hug"), "--realtime", "--to", follower,
@@ -88,37 +73,21 @@ class LiveCliTest(unittest.TestCase):
         self.assertEqual((len(ours), len(theirs)), (FRAMES, FRAMES))
         self.assertLess(difference(ours, theirs), 0.001)
 
-    def test_labels_change_from_the_next_frame_on(self):
-        changed = list(self.leader)
-        changed.insert(51, {"labels": {"hug": 0, "kick": 1}, "ease": 0.3})
-        before = frames_of(self.run_live("--from", "-", "--to", "-", lines=self.leader).stdout)
-        after = frames_of(self.run_live("--from", "-", "--to", "-", lines=changed).stdout)
-        self.assertEqual(before[:50], after[:50])
-        self.assertGreater(difference(before[50:], after[50:]), 0.01)
-
-    def interrupted(self, name, *signals):
-        """Sends signals to a run after ten frames. Returns its frames and the motion that it wrote."""
-        follower = pathlib.Path(self.folder.name) / name
+    def test_two_signals_at_once_end_the_motion_and_write_the_files(self):
+        follower = self.folder / "twice.json"
         with subprocess.Popen(
                 [tools.PROGRAMS / "duet", "live", "--server", self.server.address, "--label",
                  "hug=1", "--from", tools.sample("hug"), "--realtime", "--to", "-", "--to",
                  follower], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             lines = [process.stdout.readline() for _ in range(11)]
-            for number in signals:
+            # Two numbers: the system would merge two equal ones that nobody has read.
+            for number in (signal.SIGINT, signal.SIGTERM):
                 process.send_signal(number)
             rest, errors = rest_of(process)
         self.assertEqual(process.returncode, 0, errors)
-        return frames_of("".join(lines) + rest), json.loads(follower.read_text(encoding="utf-8"))
-
-    def test_an_interrupt_ends_the_motion_and_writes_the_files(self):
-        frames, motion = self.interrupted("interrupted.json", signal.SIGINT)
+        frames = frames_of("".join(lines) + rest)
         self.assertTrue(10 <= len(frames) < FRAMES, len(frames))
-        self.assertEqual(len(motion["leader"]), len(frames))
-
-    def test_two_signals_at_once_are_one_interrupt(self):
-        # Two numbers: the system would merge two equal ones that nobody has read.
-        frames, motion = self.interrupted("twice.json", signal.SIGINT, signal.SIGTERM)
-        self.assertEqual(len(motion["leader"]), len(frames))
+        self.assertEqual(len(json.loads(follower.read_text(encoding="utf-8"))["leader"]), len(frames))
 
     def test_another_server_takes_over(self):
         first, second = (tools.Server(metrics="127.0.0.1:0") for _ in range(2))

@@ -3,25 +3,11 @@ the protos, and a leader who moves."""
 
 import math
 import queue
-import tempfile
 
+import stubs
 import tools
+from stubs import grpc, live_pb2, motion_pb2, synthesis_pb2, synthesis_pb2_grpc  # noqa: F401
 
-try:
-    import grpc
-except ImportError as error:
-    tools.skip(f"{error}; install the package python3-grpcio")
-
-PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
-          "duet/v1/live.proto", "duet/v1/synthesis.proto", "duet/rpc/v1/status.proto")
-_STUBS = tempfile.TemporaryDirectory()  # pylint: disable=consider-using-with
-tools.generate_stubs(_STUBS.name, *PROTOS)
-
-from duet.rpc.v1 import status_pb2  # noqa: E402
-from duet.v1 import live_pb2, motion_pb2, synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
-
-SBU_JOINTS = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow "
-              "right_hand left_hip left_knee left_foot right_hip right_knee right_foot").split()
 # Across to the left and up, in metres.
 _PLACES = {"head": (0, 1.6), "neck": (0, 1.4), "torso": (0, 1.15), "chest": (0, 1.3),
            "spine": (0, 1.1), "hips": (0, 0.95), "shoulder": (0.17, 1.38), "collar": (0.08, 1.36),
@@ -53,7 +39,7 @@ def _place(joint, seconds):
     return (x + 0.2 * math.sin(1.3 * seconds), up, z + 0.15 * math.sin(0.9 * seconds))
 
 
-def start_message(joints=SBU_JOINTS, rate=30, label="hug", **changes):
+def start_message(joints=tools.JOINTS, rate=30, label="hug", **changes):
     """The first message of a session in metres, y up."""
     start = live_pb2.LiveStart(**{"seed": 7, **changes})
     leader = start.leader
@@ -137,19 +123,10 @@ class Session:
             while self.read():
                 pass
         except grpc.RpcError as failure:
-            return failure.code().name, failure.details(), _fields(failure)
+            refusal = stubs.details_of(failure).get("BadRequest")
+            fields = [violation.field for violation in refusal.field_violations] if refusal else []
+            return failure.code().name, failure.details(), fields
         return "OK", "", []
-
-
-def _fields(failure):
-    trailing = dict(failure.trailing_metadata() or ())
-    status = status_pb2.Status.FromString(trailing.get("grpc-status-details-bin", b""))
-    fields = []
-    for detail in status.details:
-        if detail.type_url.endswith("BadRequest"):
-            refusal = status_pb2.BadRequest.FromString(detail.value)
-            fields += [violation.field for violation in refusal.field_violations]
-    return fields
 
 
 def lockstep(channel, start, leader, labels=None, first=0):

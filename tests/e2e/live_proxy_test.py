@@ -5,7 +5,6 @@ import re
 import shutil
 import unittest
 
-import live_clients as live
 import proxies
 import tools
 from live_clients import Session, frames_message, grpc, person, start_message
@@ -30,7 +29,7 @@ class LiveProxyTest(proxies.BehindProxyTest):
         channel = grpc.secure_channel(f"127.0.0.1:{proxy.port}", credentials)
         self.addCleanup(channel.close)
         session = Session(channel, start_message(rate=RATE))
-        leader = person(live.SBU_JOINTS, RATE, FRAMES + 1)
+        leader = person(tools.JOINTS, RATE, FRAMES + 1)
         frames = frames_message(0, leader[:FRAMES])
         messages = 1 + MEBIBYTES * 2**20 // frames.ByteSize()
         for _ in range(1 + messages):

@@ -1,8 +1,6 @@
 """In a small container no mix of legal calls ends the server: with its default settings it stays below
-the limit, refuses what does not fit with a time to come back, and answers it then.
-
-Once in a control group that the kernel enforces, where one can be made, and once with a limit that the
-server is told and the test compares with the peak of its resident memory."""
+the limit, refuses what does not fit with a time to come back, and answers it then. The server is told the limit, and
+the test compares it with the peak of its resident memory."""
 
 import os
 import pathlib
@@ -13,6 +11,7 @@ import threading
 import unittest
 
 import tools
+from wire.corpus import standing
 
 try:
     import memory_mixes as mixes
@@ -29,10 +28,10 @@ TRANSPORTS_WORDS = ("GOAWAY received", "RST_STREAM with error code 11", "Connect
                     "while other calls waited for a place or for memory")
 LIMIT = 400 * mixes.MIB
 SECONDS = 700  # for everything, on a busy machine
-LEADER = mixes.request(144000, rate=240, chunk_frames=240)  # ten minutes: 26 MB
-CLIP = mixes.request(2400, rate=240, chunk_frames=240)
-LABELLED_CLIP = mixes.request(2400, rate=240, chunk_frames=240, keyframes=2400)
-SHORT = mixes.request(46)
+LEADER = standing(144000, rate=240, chunk_frames=240)  # ten minutes: 26 MB
+CLIP = standing(2400, rate=240, chunk_frames=240)
+LABELLED_CLIP = standing(2400, rate=240, chunk_frames=240, keyframes=2400)
+SHORT = standing(46)
 
 
 class Reloads:
@@ -62,15 +61,15 @@ class Reloads:
         self._thread.join()
 
 
-class Mixes:
-    """What holds whoever enforces the limit."""
-
+class MemoryLimitTest(unittest.TestCase):
     def serve(self, *flags):
-        raise NotImplementedError
+        server = tools.Server("--memory-limit-bytes", str(LIMIT), *flags)
+        self.addCleanup(server.stop)
+        return server
 
     def assert_within_limit(self, server):
         self.assertTrue(server.is_alive(), "the server has ended")
-        peak = mixes.resident_peak(server.pid)
+        peak = tools.peak_memory(server)
         print(f"peak of the resident memory: {peak // 1_000_000} MB of {LIMIT // 1_000_000}")
         self.assertLess(peak, LIMIT)
 
@@ -109,14 +108,6 @@ class Mixes:
             self.assert_answered(tallies[0], 32 * 5)
             self.assert_answered(tallies[1], 3)
 
-
-class SimulatedLimitTest(Mixes, unittest.TestCase):
-    def serve(self, *flags):
-        server = tools.Server("--memory-limit-bytes", str(LIMIT), *flags)
-        self.addCleanup(server.stop)
-        return server
-
-
     def test_settings_that_do_not_fit_cause_a_warning(self):
         flags = ["--max-held-bytes", str(512 * mixes.MIB)]
         server = self.serve(*flags)
@@ -129,24 +120,6 @@ class SimulatedLimitTest(Mixes, unittest.TestCase):
                             "--check-config")
         self.assertEqual(checked.returncode, 0, checked.stderr)
         self.assertIn("warning: memory: the settings admit requests that need", checked.stdout)
-
-
-class ControlGroupTest(Mixes, unittest.TestCase):
-    def setUp(self):
-        self.group, why = mixes.Cgroup.create(LIMIT)
-        if self.group is None:
-            self.skipTest(f"no control group can be made here: {why}")
-        self.addCleanup(self.group.remove)
-
-    def serve(self, *flags):
-        server = tools.Server(*flags, within=self.group)
-        self.addCleanup(server.stop)
-        self.assertEqual(server.events("settings_do_not_fit"), [])
-        return server
-
-    def assert_within_limit(self, server):
-        super().assert_within_limit(server)
-        self.assertEqual(self.group.kills(), 0)
 
 
 if __name__ == "__main__":

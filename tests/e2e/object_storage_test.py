@@ -2,13 +2,13 @@
 them (docs/guides/object_storage.md).
 """
 
-import hashlib
 import random
 import shutil
 import signal
 import subprocess
 
 import tools
+from batch_test import digests
 
 RECIPE = """
 seed: 7
@@ -22,24 +22,14 @@ SHARDS = 2
 MACHINES = 4  # of each shard that are taken away
 
 
-def digests(folder):
-    return {path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in sorted(folder.rglob("*"))
-            if path.is_file() and ".duet-batch" not in path.parts}
-
-
-def copy_file(source, target, name):
-    (target / name).parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(source / name, target / name)
-
-
 def copy(source, target, files):
     """Copies all files but the journal, and then the journal: at most `files` of them."""
     names = sorted((path.relative_to(source).as_posix() for path in source.rglob("*") if path.is_file()),
                    key=lambda name: (name == JOURNAL, name))
     names = [name for name in names if "/lock" not in name and "/tmp/" not in name]
     for name in names[:files]:
-        copy_file(source, target, name)
+        (target / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source / name, target / name)
     return files is None or files >= len(names)
 
 

@@ -5,7 +5,6 @@ their files with their configuration.
 """
 
 import os
-import pathlib
 import re
 import shutil
 import sys

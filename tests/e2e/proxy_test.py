@@ -1,7 +1,6 @@
 """HAProxy and nginx with the configurations of deploy/proxy in front of a real server: TLS, calls, what
 they refuse, and a flood of resets that the server must hear next to nothing of."""
 
-import re
 import shutil
 import unittest
 
@@ -13,13 +12,6 @@ from proxies import haproxy, nginx
 FLOOD = 60_000
 # Of a flood without a proxy every call reaches the server.
 REACH_THE_SERVER = FLOOD // 100
-
-
-def calls_of(server, method):
-    """How often a method was called, by the server's own figures."""
-    text = server.page("/metrics")[1]
-    pattern = rf'^grpc_server_started_total{{[^}}]*grpc_method="{method}"[^}}]*}} (\d+)'
-    return sum(int(count) for count in re.findall(pattern, text, re.MULTILINE))
 
 
 class ProxyTest(proxies.BehindProxyTest):
@@ -36,10 +28,10 @@ class ProxyTest(proxies.BehindProxyTest):
             tools.duet("models", "--server", address, "--tls", "--timeout", 5).returncode, 1)
 
     def check_flood(self, proxy):
-        before = calls_of(self.server, "Synthesize")
+        before = tools.started(self.server, "Synthesize")
         self.assertEqual(before, 1)  # check_calls'
         self.assertGreater(reset_flood.flood(proxy.port, True, FLOOD), 0)
-        reached = calls_of(self.server, "Synthesize") - before
+        reached = tools.started(self.server, "Synthesize") - before
         self.assertLess(reached, REACH_THE_SERVER)
         self.assertEqual(tools.duet("models", "--server", self.server.address).returncode, 0)
 

@@ -5,32 +5,12 @@ after the other, in raw HTTP/2 frames. Bounded in count; only ever aimed at the 
 import contextlib
 import socket
 import ssl
-import struct
 import threading
 
-HEADERS, RST_STREAM, SETTINGS = 1, 3, 4
-END_HEADERS = 4
-CANCEL = 8
-PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
+import http2_client as http2
+
+CANCEL = (8).to_bytes(4, "big")
 CALLS_A_WRITE = 200
-
-
-def _frame(kind, flags, stream, payload=b""):
-    return struct.pack(">I", len(payload))[1:] + bytes([kind, flags]) + struct.pack(
-        ">I", stream) + payload
-
-
-def _literal(text):
-    return bytes([len(text)]) + text.encode()
-
-
-def _header_block(authority):
-    """HPACK without its table: POST of a Synthesize call."""
-    return (b"\x83\x87"  # :method POST, :scheme https
-            + b"\x04" + _literal("/duet.v1.MotionSynthesis/Synthesize")  # :path
-            + b"\x01" + _literal(authority)
-            + b"\x0f\x10" + _literal("application/grpc")  # content-type
-            + b"\x00" + _literal("te") + _literal("trailers"))
 
 
 def _discard(connection):
@@ -57,16 +37,16 @@ def _flood_connection(port, encrypted, wanted):
     except OSError:
         return 0
     sent = 0
-    block = _header_block(f"127.0.0.1:{port}")
+    block = http2.request_headers("/duet.v1.MotionSynthesis/Synthesize", scheme="https" if encrypted else "http")
     with connection:
         reader = threading.Thread(target=_discard, args=(connection,), daemon=True)
         try:
-            connection.sendall(PREFACE + _frame(SETTINGS, 0, 0))
+            connection.sendall(http2.PREFACE + http2.frame(http2.SETTINGS, 0, 0))
             reader.start()
             while sent < wanted:
                 burst = b"".join(
-                    _frame(HEADERS, END_HEADERS, stream, block)
-                    + _frame(RST_STREAM, 0, stream, struct.pack(">I", CANCEL))
+                    http2.frame(http2.HEADERS, http2.END_HEADERS, stream, block)
+                    + http2.frame(http2.RST_STREAM, 0, stream, CANCEL)
                     for stream in range(2 * sent + 1, 2 * (sent + CALLS_A_WRITE) + 1, 2))
                 connection.sendall(burst)
                 sent += CALLS_A_WRITE

@@ -16,7 +16,6 @@ import tempfile
 import time
 import unittest
 
-import puppets
 import tools
 
 SLURM = tools.SOURCE / "deploy/slurm"
@@ -27,6 +26,9 @@ reactions { each_class {} }
 reactions { mixes { count: 600 } }
 output { formats: FORMAT_NPY }
 """
+# The training set: who leads does what a sample does, and each follower what another sample does.
+SUBJECTS = ("ann", "bo", "cy")
+ANSWERS = {"kick": "push", "push": "kick", "shake_hands": "shake_hands"}
 # A network so small that an epoch takes a tenth of a second, and enough of them to be struck within.
 TRAINING = [word for setting in (
     "epochs=40", "batch=16", "generator.slice_features=10", "generator.encoder_hidden=8",
@@ -161,6 +163,22 @@ def timeless(folder):
     return found
 
 
+def make_data_set(folder):
+    """Writes the data set `folder`/studio; returns its path."""
+    captures = folder / "captures"
+    captures.mkdir()
+    rows = ["leader\tfollower\tlabel\tsubjects"]
+    for subject in SUBJECTS:
+        for label, answer in ANSWERS.items():
+            names = [f"{subject}_{label}_{role}.bvh" for role in ("leader", "follower")]
+            for name, sample in zip(names, (label, answer)):
+                shutil.copy(tools.sample(sample), captures / name)
+            rows.append("\t".join((*names, label, subject)))
+    (captures / "pairs.tsv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    tools.run(tools.PROGRAMS / "duet-import", "--from", captures, "--out", folder / "studio").check_returncode()
+    return folder / "studio"
+
+
 class SlurmTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -235,8 +253,8 @@ class SlurmTest(unittest.TestCase):
         self.assertEqual((different, unreadable), ([], []))
 
     def test_faults_leave_no_trace_in_trained_models(self):
-        data = puppets.make_data_set(self.folder)
-        folds = " ".join(puppets.SUBJECTS)
+        data = make_data_set(self.folder)
+        folds = " ".join(SUBJECTS)
         runs = self.folder / "runs"
         said = self.cluster.run(SLURM / "submit_training.sh", data, runs, folds,
                                 "--cpus-per-task=1", "--", *TRAINING)
@@ -244,7 +262,7 @@ class SlurmTest(unittest.TestCase):
 
         # Each fault strikes a fold that is being trained.
         def begun(fold):
-            log = runs / puppets.SUBJECTS[fold] / "log.csv"
+            log = runs / SUBJECTS[fold] / "log.csv"
             wait_for(f"epochs of fold {fold}",
                      lambda: log.exists() and log.read_text().count("\n") > 5)
         begun(0)
@@ -259,13 +277,13 @@ class SlurmTest(unittest.TestCase):
         one_thread = {**os.environ, "OMP_NUM_THREADS": "1"}
         for words in (("duet-train", "--data", data, "--out", whole, "--protocol", "loso", *TRAINING),
                       ("duet-eval", "folds", "--data", data, "--runs", f"trained={whole}",
-                       "--subjects", *puppets.SUBJECTS, "--out", whole / "results")):
+                       "--subjects", *SUBJECTS, "--out", whole / "results")):
             result = tools.run(tools.PROGRAMS / words[0], *words[1:], timeout=LONGEST_RUN,
                                env=one_thread)
             self.assertEqual(result.returncode, 0, result.stderr)
 
         self.wait_for_end(measure)
-        for fold in range(len(puppets.SUBJECTS)):
+        for fold in range(len(SUBJECTS)):
             self.assertGreaterEqual(self.restarts(job, fold), 1, fold)
         expected, found = timeless(whole), timeless(runs)
         self.assertIn("ann/checkpoint/studio/1/weights.safetensors", expected)

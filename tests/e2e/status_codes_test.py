@@ -3,31 +3,16 @@ code with ours; and an engine that is slow, throws or answers nonsense, which fa
 
 import hashlib
 import pathlib
-import re
 import tempfile
 import threading
 import unittest
 
 import tools
+from stubs import grpc, motion_pb2, synthesis_pb2, synthesis_pb2_grpc
 
-try:
-    import grpc
-except ImportError as error:
-    tools.skip(f"{error}; install the package python3-grpcio")
-
-PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
-          "duet/v1/live.proto", "duet/v1/synthesis.proto")
 FAKE_SERVER = tools.PROGRAMS.parent / "tests" / "duet-fake-server"
-JOINTS = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand "
-          "left_hip left_knee left_foot right_hip right_knee right_foot").split()
 FRAMES = 20  # less than a window
 DRAINING = "the server is shutting down"
-
-
-def figure(server, pattern):
-    """A number of the metrics port; 0 while it is not there."""
-    found = re.search(rf"^{pattern} (\d+)", server.page("/metrics")[1], re.MULTILINE)
-    return int(found[1]) if found else 0
 
 
 class StatusCodesTest(unittest.TestCase):
@@ -43,7 +28,7 @@ class StatusCodesTest(unittest.TestCase):
     def request(self, interaction_class="punch", weight=1):
         """A leader who stands still; a weight of -1 is what the fake engine fails at."""
         leader = motion_pb2.Motion(
-            joint_names=JOINTS, frame_rate_hz=15, unit=motion_pb2.LENGTH_UNIT_METRES,
+            joint_names=tools.JOINTS, frame_rate_hz=15, unit=motion_pb2.LENGTH_UNIT_METRES,
             up_axis=motion_pb2.UP_AXIS_Y_UP, frame_count=FRAMES,
             positions=[0.1 * (i % 45) for i in range(FRAMES * 45)])
         request = synthesis_pb2.SynthesizeRequest(leader=leader)
@@ -66,11 +51,11 @@ class StatusCodesTest(unittest.TestCase):
 
     def slow_call(self, server):
         """A call that the engine has begun with, and goes on with until somebody ends it."""
-        before = figure(server, r'duet_calls_in_flight\{method="Synthesize"\}')
+        before = server.figure(r'duet_calls_in_flight\{method="Synthesize"\}')
         call = self.synthesize(self.request("shake_hands", -1))
         next(call)  # the header; the window is in line or with the engine
-        tools.wait_until(lambda: figure(server, r'duet_calls_in_flight\{method="Synthesize"\}')
-                         == before + 1 and figure(server, "duet_queued_windows") == 0,
+        tools.wait_until(lambda: server.figure(r'duet_calls_in_flight\{method="Synthesize"\}')
+                         == before + 1 and server.figure("duet_queued_windows") == 0,
                          "the engine has the window")
         self.addCleanup(call.cancel)
         return call
@@ -80,32 +65,20 @@ class StatusCodesTest(unittest.TestCase):
         tools.wait_until(lambda: len(server.events("call")) >= count, f"{count} calls are logged")
         return [entry["code"] for entry in server.events("call")]
 
-    def test_ok(self):
+    def test_codes_of_requests(self):
         self.serve()
-        self.assertEqual(self.code_of(self.synthesize(self.request())), "OK")
 
-    def test_invalid_argument(self):
-        self.serve()
-        request = self.request()
-        request.leader.frame_rate_hz = -1
-        code, message = self.end_of(self.synthesize(request))
+        def of_changed(change):
+            request = self.request()
+            change(request)
+            return self.end_of(self.synthesize(request))
+        self.assertEqual(of_changed(lambda _: None), ("OK", ""))
+        code, message = of_changed(lambda request: setattr(request.leader, "frame_rate_hz", -1))
         self.assertEqual(code, "INVALID_ARGUMENT")
         self.assertIn("leader.frame_rate_hz: expected 1 to 240 frames per second, got -1", message)
-
-    def test_failed_precondition(self):
-        self.serve()
-        request = self.request()
-        request.leader.joint_names[0] = "tail"
-        self.assertEqual(self.code_of(self.synthesize(request)), "FAILED_PRECONDITION")
-
-    def test_not_found(self):
-        self.serve()
-        request = self.request()
-        request.model.name = "nobody"
-        self.assertEqual(self.code_of(self.synthesize(request)), "NOT_FOUND")
-
-    def test_unimplemented(self):
-        self.serve()
+        self.assertEqual(of_changed(lambda request: request.leader.joint_names.__setitem__(0, "tail"))[0],
+                         "FAILED_PRECONDITION")
+        self.assertEqual(of_changed(lambda request: setattr(request.model, "name", "nobody"))[0], "NOT_FOUND")
         dance = self.channel.unary_unary("/duet.v1.MotionSynthesis/Dance")
         with self.assertRaises(grpc.RpcError) as caught:
             dance(b"", timeout=tools.RUN_SECONDS)
@@ -131,13 +104,13 @@ class StatusCodesTest(unittest.TestCase):
         server = self.serve("--workers", "1")
         self.slow_call(server)
         calls = [self.synthesize(self.request()) for _ in range(5)]
-        tools.wait_until(lambda: figure(server, "duet_queued_windows") == len(calls),
+        tools.wait_until(lambda: server.figure("duet_queued_windows") == len(calls),
                          "the one worker is busy and all others wait")
         for path in ("/healthz", "/readyz"):
             self.assertEqual(server.page(path)[0], 200)
         health = self.channel.unary_unary("/grpc.health.v1.Health/Check")
         self.assertEqual(health(b"", timeout=tools.RUN_SECONDS), b"\x08\x01")  # SERVING
-        self.assertEqual(figure(server, "duet_queued_windows"), len(calls))
+        self.assertEqual(server.figure("duet_queued_windows"), len(calls))
         for call in calls:
             call.cancel()
 
@@ -175,20 +148,17 @@ class StatusCodesTest(unittest.TestCase):
         calls = [self.synthesize(self.request(interaction_class, weight))
                  for interaction_class, weight in (("punch", 1), ("kick", -1), ("push", -1),
                                                    ("hug", -1), ("punch", 0.5))]
-        tools.wait_until(lambda: figure(server, "duet_queued_windows") == len(calls),
+        tools.wait_until(lambda: server.figure("duet_queued_windows") == len(calls),
                          "all wait for the one worker")
         slow.cancel()
         self.assertEqual([self.code_of(call) for call in calls],
                          ["OK", "INTERNAL", "INTERNAL", "INTERNAL", "OK"])
         # The slow one and theirs.
-        self.assertEqual(figure(server, "duet_batch_size_count"), 2)
-        self.assertEqual(figure(server, "duet_batch_size_sum"), 1 + len(calls))
+        self.assertEqual(server.figure("duet_batch_size_count"), 2)
+        self.assertEqual(server.figure("duet_batch_size_sum"), 1 + len(calls))
 
 
 if __name__ == "__main__":
     if not FAKE_SERVER.exists():
         tools.skip("duet-fake-server is not built")
-    with tempfile.TemporaryDirectory() as stubs:
-        tools.generate_stubs(stubs, *PROTOS)
-        from duet.v1 import motion_pb2, synthesis_pb2, synthesis_pb2_grpc
-        tools.main()
+    tools.main()

@@ -1,4 +1,4 @@
-"""Helpers of the end-to-end tests: programs, a running server, pictures."""
+"""Helpers of the end-to-end tests: programs, a running server, colours."""
 
 import collections
 import contextlib
@@ -7,16 +7,14 @@ import json
 import os
 import pathlib
 import queue
-import shutil
+import re
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
 import threading
 import time
 import unittest
-import zlib
 
 from free_ports import free_port, free_ports  # noqa: F401
 
@@ -31,6 +29,8 @@ SANITIZED = bool(os.environ.get("DUET_SANITIZER"))
 MEMORY_FACTOR = 4 if SANITIZED else 1
 
 CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
+JOINTS = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand left_hip left_knee "
+          "left_foot right_hip right_knee right_foot").split()  # of the model sbu
 
 
 def sample(name):
@@ -68,19 +68,17 @@ def page(port, path):
 
 class Server:
     """A duet-server on a free port, and everything that it logged, or the last `kept_lines` of it.
-    `metrics_port` is that of its figures where `metrics` names an address, `within` a
-    memory_mixes.Cgroup that it runs in."""
+    `metrics_port` is that of its figures where `metrics` names an address."""
 
     def __init__(self, *flags, port=0, metrics="", descriptors=None, kept_lines=None,
-                 program=PROGRAMS / "duet-server", within=None):
+                 program=PROGRAMS / "duet-server"):
         self.log = [] if kept_lines is None else collections.deque(maxlen=kept_lines)
         self.metrics_port = None
         limit = [] if descriptors is None else ["prlimit", f"--nofile={descriptors}"]
         command = [*limit, program, "--listen", f"127.0.0.1:{port}", "--metrics-listen", metrics,
                    *flags]
         self._process = subprocess.Popen(
-            command if within is None else within.command(command),
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
         # Reads the whole log, because the server blocks when the pipe is full.
         self._reader = threading.Thread(target=self._read_log, args=(serving,), daemon=True)
@@ -120,6 +118,10 @@ class Server:
         """A page of the metrics port: status and text."""
         return page(self.metrics_port, path)
 
+    def figure(self, pattern):
+        """The sum of the figures whose lines begin with a pattern; 0 while there is none."""
+        return sum(int(value) for value in re.findall(rf"^{pattern}\S* (\d+)$", self.page("/metrics")[1], re.MULTILINE))
+
     def events(self, name):
         """The lines of one event, in order."""
         return [entry for entry in list(self.log) if entry.get("event") == name]
@@ -148,6 +150,17 @@ class Server:
         if code < 0 and code != -signal.SIGKILL:
             raise AssertionError(f"the server ended with signal {-code}: {list(self.log)[-20:]}")
         return code
+
+
+def peak_memory(server):
+    """The most bytes that a server has had resident."""
+    status = pathlib.Path(f"/proc/{server.pid}/status").read_text(encoding="utf-8")
+    return int(re.search(r"VmHWM:\s+(\d+)", status)[1]) * 1024
+
+
+def started(server, method):
+    """How many calls of a method have begun."""
+    return server.figure(rf'grpc_server_started_total\{{grpc_method="{method}"')
 
 
 class FolderTest(unittest.TestCase):
@@ -193,17 +206,6 @@ def together(jobs):
     return results
 
 
-def generate_stubs(folder, *protos):
-    """Python stubs of protos, below `folder`, which becomes importable. Skips without the plugin."""
-    # Not grpc_tools.protoc: Debian 12's version is from 2018 and does not support `optional`.
-    plugin = shutil.which("grpc_python_plugin")
-    if plugin is None:
-        skip("no grpc_python_plugin; install the package protobuf-compiler-grpc")
-    run("protoc", f"-I{SOURCE / 'proto'}", f"--python_out={folder}", f"--grpc_python_out={folder}",
-        f"--plugin=protoc-gen-grpc_python={plugin}", *protos).check_returncode()
-    sys.path.insert(0, folder)
-
-
 @contextlib.contextmanager
 def running_server(*flags, **options):
     server = Server(*flags, **options)
@@ -211,62 +213,6 @@ def running_server(*flags, **options):
         yield server
     finally:
         server.stop()
-
-
-class Picture:
-    """The pixels of a PNG as Chromium writes it: 8 bits, RGB or RGBA, not interlaced. `scale`: its
-    pixels for each pixel of the layout, along one axis."""
-
-    def __init__(self, data, scale=1):
-        self.scale = scale
-        self.width, self.height, depth, kind = struct.unpack(">IIBB", data[16:26])
-        assert depth == 8 and kind in (2, 6), "not a PNG of 8 bits a channel"
-        self.channels = 3 if kind == 2 else 4
-        self.rows = self._unfilter(zlib.decompress(b"".join(self._chunks(data, b"IDAT"))))
-
-    @staticmethod
-    def _chunks(data, wanted):
-        at = 8
-        while at < len(data):
-            length, kind = struct.unpack(">I4s", data[at:at + 8])
-            if kind == wanted:
-                yield data[at + 8:at + 8 + length]
-            at += 12 + length
-
-    def _unfilter(self, raw):
-        stride = self.width * self.channels
-        rows, above = [], bytearray(stride)
-        for start in range(0, len(raw), stride + 1):
-            above = self._unfilter_row(raw[start], bytearray(raw[start + 1:start + 1 + stride]),
-                                       above)
-            rows.append(above)
-        return rows
-
-    def _unfilter_row(self, kind, row, above):
-        step = self.channels
-        for i in range(len(row)):
-            a = row[i - step] if i >= step else 0
-            b = above[i]
-            c = above[i - step] if i >= step else 0
-            if kind == 1:
-                row[i] = (row[i] + a) & 255
-            elif kind == 2:
-                row[i] = (row[i] + b) & 255
-            elif kind == 3:
-                row[i] = (row[i] + (a + b) // 2) & 255
-            elif kind == 4:
-                nearest = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))
-                row[i] = (row[i] + nearest[2]) & 255
-        return row
-
-    def count(self, is_wanted, left=0.25, right=0.9, top=0.1, bottom=0.85):
-        """Pixels of the stage (away from the panels) whose (red, green, blue) is wanted, in pixels of
-        the layout."""
-        columns = range(int(left * self.width), int(right * self.width))
-        wanted = sum(is_wanted(*self.rows[y][x * self.channels:x * self.channels + 3])
-                     for y in range(int(top * self.height), int(bottom * self.height))
-                     for x in columns)
-        return wanted / self.scale ** 2
 
 
 def is_leader_orange(red, green, blue):

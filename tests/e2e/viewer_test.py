@@ -1,4 +1,4 @@
-"""The viewer's page in a real browser, handled with real keys and clicks.
+"""The pages of the viewer, of a pair and of several motions, in a real browser, handled with real keys and clicks.
 
     viewer_test.py <write_test_page program>
 """
@@ -11,7 +11,7 @@ import tools
 FRAMES = 90
 
 
-class ViewerTest(tools.FolderTest):
+class ViewerTest(browser.BrowserTest):
     shared = None  # see paused
 
     @classmethod
@@ -19,16 +19,9 @@ class ViewerTest(tools.FolderTest):
         super().setUpClass()
         cls.file = cls.folder / "page.html"
         tools.run(WRITE_TEST_PAGE, cls.file).check_returncode()
-        cls.browser = browser.Browser()
-        cls.addClassCleanup(cls.browser.close)
-
-    def open(self, suffix="", file=None, **size):
-        page = self.browser.open((file or self.file).as_uri() + suffix, **size)
-        self.addCleanup(page.close)
-        return page
 
     def open_good(self, suffix="", **size):
-        page = self.open(suffix, **size)
+        page = self.open_page(self.file.as_uri() + suffix, **size)
         self.assertEqual(page.state()["state"], "ready", page.state())
         return page
 
@@ -49,7 +42,7 @@ class ViewerTest(tools.FolderTest):
         self.assertIn(old, html)
         copy = self.folder / f"{self.id()}.html"
         copy.write_text(html.replace(old, new), encoding="utf-8")
-        return copy
+        return copy.as_uri()
 
     def test_page_plays_when_opened(self):
         page = self.open_good()
@@ -65,13 +58,13 @@ class ViewerTest(tools.FolderTest):
         self.assertEqual(urls, [self.file.as_uri()])
 
     def test_policy_blocks_a_page_that_fetches(self):
-        page = self.open("#paused", self.spoilt("\nstart();\n", """
+        page = self.open_page(self.spoilt("\nstart();\n", """
             document.addEventListener('securitypolicyviolation', (event) => {
               document.documentElement.dataset.violation = event.effectiveDirective;
             });
             new Image().src = 'http://127.0.0.1:9/picture.png';
             start();
-            """))
+            """) + "#paused")
         page.wait_until("document.documentElement.dataset.violation === 'img-src'")
 
     def test_measure_button_shows_contact_and_distance(self):
@@ -118,19 +111,6 @@ class ViewerTest(tools.FolderTest):
         page.wait_until(f"document.documentElement.dataset.frame > {FRAMES // 2}")
         page.wait_until("(document.documentElement.dataset.saved || '').includes('.webm')")
         self.assertEqual(page.state()["frame"], str(FRAMES - 1))
-
-    def test_floor_is_the_worlds_for_floating_characters(self):
-        page = self.paused()
-        heights = "(() => { const motion = new Motion(JSON.parse(document.getElementById('data')" \
-                  ".textContent)); const rise = (by) => { for (const positions of" \
-                  " Object.values(motion.people)) for (let i = 1; i < positions.length; i += 3)" \
-                  " positions[i] += by; return motion.floor(); };" \
-                  " const stands = motion.standingHeight('leader');" \
-                  " return [rise(0.3 - stands), rise(-2)]; })()"
-        floating, sunk = page.evaluate(heights)
-        self.assertEqual(floating, {"height": 0, "ofWorld": True})
-        self.assertFalse(sunk["ofWorld"])
-        self.assertAlmostEqual(sunk["height"], 0.3 - 2 - 0.06, delta=0.01)
 
     def test_draws_only_after_a_change(self):
         page = self.paused()
@@ -212,15 +192,71 @@ class ViewerTest(tools.FolderTest):
         self.assertAlmostEqual(orange(), before, delta=before / 4)
 
     def test_script_error_is_displayed(self):
-        page = self.open(file=self.spoilt("\nstart();\n", "\nthrow new Error('boom');\n"))
+        page = self.open_page(self.spoilt("\nstart();\n", "\nthrow new Error('boom');\n"))
         self.assertEqual(page.state()["state"], "failed")
         self.assertIn("boom", page.text("#failure"))
 
     def test_missing_webgl_is_reported(self):
-        page = self.open(file=self.spoilt(
+        page = self.open_page(self.spoilt(
             "\nstart();\n", "\nHTMLCanvasElement.prototype.getContext = () => null;\nstart();\n"))
         self.assertEqual(page.state()["state"], "failed")
         self.assertIn("WebGL", page.text("#failure"))
+
+
+class GalleryTest(browser.BrowserTest):
+    """The page of duet view."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.file, pair = cls.folder / "view.html", cls.folder / "kick.json"
+        browser.write_pair(pair)
+        tools.duet("view", f"pair={pair}", tools.sample("hug"), "--out", cls.file).check_returncode()
+
+    def open_good(self, suffix=""):
+        page = self.open_page(self.file.as_uri() + suffix, width=1000, height=640)
+        self.assertEqual(page.state()["state"], "ready", page.state())
+        return page
+
+    def test_plays_all_motions_at_once_until_the_curves_are_clicked(self):
+        page = self.open_good()
+        self.assertEqual(page.state()["cells"], "2")
+        page.wait_until("Number(document.documentElement.dataset.frame) > 2")
+        page.click("#charts")
+        last = int(page.evaluate("document.getElementById('scrub').max"))
+        self.assertFalse(page.evaluate("Boolean(document.querySelector('#play.playing'))"))
+        self.assertAlmostEqual(int(page.text("#frame")), last / 2, delta=2)
+        self.assertEqual(page.events("Runtime.exceptionThrown"), [])
+
+    def test_every_motion_is_in_view_and_a_person_can_be_hidden(self):
+        page = self.open_good("#frame=20&paused&view=top")
+        sides = {"top": 0.2, "bottom": 0.65}
+
+        def counts():
+            picture = page.picture()
+            return [picture.count(colour, **half, **sides) for half in ({"left": 0, "right": 0.5}, {"left": 0.5, "right": 1})
+                    for colour in (tools.is_leader_orange, tools.is_follower_teal)]
+        for key in ("3", "0", "1", "2"):
+            page.press(key)
+            self.assertEqual([count > 300 for count in counts()], [True, True, True, False], key)
+        page.click("[data-person=leader]")
+        self.assertEqual([count > 0 for count in counts()], [False, True, False, False])
+
+    def test_curves_follow_the_timeline(self):
+        page = self.open_good("#frame=30&paused")
+        titles = page.evaluate(
+            "[...document.querySelectorAll('.chart b')].map((title) => title.textContent)")
+        self.assertEqual(titles, ["Speed", "Distance between them"])
+        counts = page.evaluate("[...document.querySelectorAll('.chart')]"
+                               ".map((chart) => chart.querySelectorAll('polyline').length)")
+        self.assertEqual(counts, [2, 1])  # one alone has no distance
+        line, thumb = page.evaluate("""(() => {
+          const last = Number(document.getElementById('scrub').max);
+          const track = document.getElementById('scrub').getBoundingClientRect();
+          return [document.querySelector('.chart .now').getBoundingClientRect().left,
+                  track.left + 7 + (track.width - 14) * 30 / last];
+        })()""")
+        self.assertAlmostEqual(line, thumb, delta=1.5)
 
 
 WRITE_TEST_PAGE = sys.argv.pop(1)

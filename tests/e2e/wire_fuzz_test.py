@@ -14,10 +14,11 @@ import tempfile
 import unittest
 import unittest.mock
 
+import fuzzing
 import http2_client as http2
 import tools
 import wire_fuzzer
-from wire import calls, corpus, judge, mutation, player, protobuf, rounds, saved, target
+from wire import calls, corpus, judge, mutation, player, protobuf, rounds, target
 
 BUILD = sys.argv[1]
 SECONDS = os.environ.get("DUET_WIRE_SECONDS", "30")
@@ -63,15 +64,6 @@ class InputsTest(unittest.TestCase):
             self.assertEqual(one[number], same[number], number)
         self.assertNotEqual([one[begin + i] for i in range(5)], [other[begin + i] for i in range(5)])
 
-    def test_rounds_are_kept_in_a_file(self):
-        some = rounds.Rounds(3, METHODS)
-        wanted = [some[some.systematic_count + i] for i in range(20)]
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "rounds.json"
-            saved.write(path, {"seed": 3}, wanted)
-            self.assertEqual(saved.read(path), wanted)
-            self.assertEqual(json.loads(path.read_text())["seed"], 3)
-
 
 class CorpusTest(unittest.TestCase):
     """That the server accepts the real requests: mutations of others reach no code behind its checks."""
@@ -98,13 +90,6 @@ class CorpusTest(unittest.TestCase):
                 return judge.messages_in(body)
         raise AssertionError("the call has no end")
 
-    def test_clips_are_answered(self):
-        for request in self.requests[corpus.SYNTHESIZE]:
-            answers = self.accepted(corpus.SYNTHESIZE, request)
-            self.assertTrue(protobuf.values(answers[-1], 3), "no summary")
-        header = protobuf.values(answers[0], 1)[0]
-        self.assertTrue(protobuf.values(header, 14), "no rig")
-
     def test_sessions_are_answered(self):
         *starts, frames, change = self.requests[corpus.LIVE]
         for start in starts:
@@ -127,7 +112,7 @@ class FindingsTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
-        self.patch(wire_fuzzer, "REPORT_SECONDS", 1)
+        self.patch(fuzzing, "REPORT_SECONDS", 1)
 
     def find(self, *words, patience="60"):
         status, printed = fuzz("--out", self.folder, "--from", "1", "--rounds", "3", "--patience",
@@ -168,7 +153,7 @@ class FindingsTest(unittest.TestCase):
 
     def test_hanging_server_is_reported(self):
         self.during_the_second_round(lambda server: os.kill(server.pid, signal.SIGSTOP))
-        self.assertIn("hangs", self.find(patience="1"))
+        self.assertIn("goes on, hangs", self.find(patience="1"))
 
     def test_changed_answer_is_reported(self):
         real, seen = judge.call, set()

@@ -15,53 +15,17 @@ must end the server with 0. docs/fuzzing.md has more.
 Exit status: 0 if nothing was found, 1 if something was: the last rounds are then in OUT/rounds.json.
 """
 
-import argparse
 import collections
-import os
-import pathlib
-import secrets
 import sys
-import time
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
+import fuzzing
+
 KEPT_ROUNDS = 20  # those of which one or several broke the server
-SHOWN_LINES = 60
-REPORT_SECONDS = 10  # in which a server that is ending has written its report
+PARSER = fuzzing.make_parser(__doc__, "wire/rounds.json", patience=60)
+if __name__ == "__main__":
+    fuzzing.set_environment(PARSER)
 
-
-def read_arguments(words=None):
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("build", type=pathlib.Path, help="build folder, such as build/release")
-    parser.add_argument("--server", type=pathlib.Path, help="program; BUILD/bin/duet-server if absent")
-    parser.add_argument("--seconds", type=float, default=30,
-                        help="time after which no further round begins, the systematic ones excepted")
-    parser.add_argument("--seed", type=int, help="of the random rounds; printed if absent")
-    parser.add_argument("--from", type=int, default=0, dest="first", metavar="ROUND",
-                        help="number of the first round to play")
-    parser.add_argument("--rounds", type=int, help="how many to play, whatever --seconds")
-    parser.add_argument("--replay", type=pathlib.Path, help="play the rounds of this file instead")
-    parser.add_argument("--repeat", type=int, default=1, help="times to play --rounds or --replay")
-    parser.add_argument("--memory", type=int, default=600, help="most MiB that the server may use")
-    parser.add_argument("--patience", type=float, default=60,
-                        help="seconds without an answer after which the server counts as hung")
-    parser.add_argument("--out", type=pathlib.Path, default=SOURCE / "out/wire",
-                        help="folder for the rounds that broke something")
-    return parser.parse_args(words)
-
-
-def chosen_rounds(arguments, rounds, saved):
-    """The rounds to play, as (number, round)."""
-    if arguments.replay or arguments.rounds is not None:
-        count = len(saved) if arguments.replay else arguments.rounds
-        for _ in range(arguments.repeat):
-            for number in range(arguments.first, arguments.first + count):
-                yield number, saved[number] if arguments.replay else rounds[number]
-        return
-    end = time.monotonic() + arguments.seconds
-    number = arguments.first
-    while number < rounds.systematic_count or time.monotonic() < end:
-        yield number, rounds[number]
-        number += 1
+from wire import corpus, judge, player, rounds, saved, target  # noqa: E402
 
 
 class Session:
@@ -74,14 +38,18 @@ class Session:
         self.count = self.calls = self.good_calls = self.peak_mib = 0
 
     def run(self):
-        """Raises Finding with what the server did wrong."""
+        """Returns a summary; raises Finding with what the server did wrong."""
         self.target = target.Target(self._arguments.server)
         try:
             self._attack()
-        except (OSError, player.Unanswered, judge.Finding) as error:
-            self._explain(error)
+        except (OSError, player.Unanswered, fuzzing.Finding) as error:
+            numbers = [number for number, _ in self._played] or [self._arguments.first]
+            fuzzing.explain(error, self.target, "wire", self._arguments, self._seed, numbers, lambda path: saved.write(
+                path, {"seed": self._seed, "numbers": numbers}, [connections for _, connections in self._played]))
         finally:
             self.target.kill()
+        return (f"{self.count} rounds, {self.calls} pieces sent, {self.good_calls} good calls "
+                f"answered as ever, {self.peak_mib} MiB at most, stopped with 0")
 
     def _attack(self):
         patience = self._arguments.patience
@@ -99,9 +67,10 @@ class Session:
         self.target.stop()
 
     def _play_all(self, generated, caller):
-        saved = saved_rounds.read(self._arguments.replay) if self._arguments.replay else None
+        kept = saved.read(self._arguments.replay) if self._arguments.replay else None
         one = player.Player(self.target.ports, self._arguments.patience)
-        for number, connections in chosen_rounds(self._arguments, generated, saved):
+        for number, connections in fuzzing.chosen_rounds(
+                self._arguments, generated.__getitem__, kept, generated.systematic_count):
             self._played.append((number, connections))
             one.play(connections)
             self._judge.check_probes()
@@ -110,24 +79,6 @@ class Session:
             self.count += 1
             self.calls += sum(step[0] == "send" for each in connections for step in each["steps"])
             self.peak_mib = max(self.peak_mib, self._judge.memory_mib())
-
-    def _explain(self, error):
-        """Raises what was found, with the server's end, and keeps the last rounds."""
-        server = self.target.server
-        code = server.exit_code(REPORT_SECONDS)
-        state = "hangs or misbehaves" if code is None else f"ended with {code}"
-        self._arguments.out.mkdir(parents=True, exist_ok=True)
-        path = self._arguments.out / "rounds.json"
-        numbers = [number for number, _ in self._played] or [self._arguments.first]
-        saved_rounds.write(path, {"seed": self._seed, "numbers": numbers},
-                           [connections for _, connections in self._played])
-        lines = self.target.complaints()[:SHOWN_LINES]
-        raise judge.Finding("".join((
-            f"{error}; the server {state}\n", *lines,
-            f"last rounds: {numbers[0]} to {numbers[-1]}, kept in {path}\n"
-            f"repeat: wire_fuzzer.py {self._arguments.build} --replay {path}, or --seed {self._seed} "
-            f"--from {numbers[0]} --rounds {len(numbers)}"
-        ))) from error
 
 
 def good_calls(methods):
@@ -140,25 +91,8 @@ def good_calls(methods):
 
 
 def main(words=None):
-    arguments = read_arguments(words)
-    seed = secrets.randbelow(2**31) if arguments.seed is None else arguments.seed
-    print(f"wire fuzzer: seed {seed}", flush=True)
-    session = Session(arguments, seed)
-    try:
-        session.run()
-    except judge.Finding as finding:
-        print(f"FOUND: {finding}", flush=True)
-        return 1
-    print(f"{session.count} rounds, {session.calls} pieces sent, {session.good_calls} good calls "
-          f"answered as ever, {session.peak_mib} MiB at most, stopped with 0", flush=True)
-    return 0
+    return fuzzing.main("wire", PARSER.parse_args(words), lambda arguments, seed: Session(arguments, seed).run())
 
-
-if __name__ == "__main__":
-    os.environ.setdefault("DUET_SOURCE_DIR", str(SOURCE))
-    os.environ.setdefault("DUET_BIN_DIR", str(read_arguments().build.resolve() / "bin"))
-from wire import corpus, judge, player, rounds, target  # noqa: E402
-from wire import saved as saved_rounds  # noqa: E402
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -2,9 +2,12 @@
 
 The fuzzer asks the server by reflection what it serves, and fails for a method that has none here."""
 
+import array
 import pathlib
+import struct
 
-from wire.protobuf import message, values
+import tools
+from wire.protobuf import FIXED64, Field, message, values
 
 HEALTH = "grpc.health.v1.Health"
 REFLECTION = "grpc.reflection.v1alpha.ServerReflection"
@@ -44,6 +47,20 @@ def requests_of_methods(source):
             message(f4=f"{SYNTHESIS}.Synthesize"), message(f5=message(f1="duet.v1.Motion", f2=7)),
             message(f6="duet.v1.Motion")],
     }
+
+
+def standing(frames, rate=15, chunk_frames=30, keyframes=0):
+    """A request for the answer to a person of the model sbu who stands. Encoded by hand, because generated Python code
+    takes seconds for the longest leaders."""
+    heights = {"head": 1.6, "neck": 1.4, "torso": 1.15, "shoulder": 1.38, "elbow": 1.1, "hand": 0.85, "hip": 0.92,
+               "knee": 0.5, "foot": 0.08}
+    pose = [value for joint in tools.JOINTS
+            for value in (0.15 * (joint.startswith("left") - joint.startswith("right")), heights[joint.split("_")[-1]], 0)]
+    leader = (message(f1=tools.JOINTS) + Field(2, FIXED64, struct.pack("<d", rate)).encoded() +
+              message(f3=1, f4=1, f5=frames, f6=array.array("f", pose).tobytes() * frames))  # metres, y up
+    weights = message(f1=message(f1="punch", f2=1.0))
+    labels = message(f4=[message(f1=i, f2=weights) for i in range(keyframes)]) or message(f3=weights)
+    return message(f2=leader) + labels + message(f6=chunk_frames)
 
 
 def with_rotations(sample):

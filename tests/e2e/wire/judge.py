@@ -7,6 +7,7 @@ import threading
 import time
 
 import http2_client as http2
+from fuzzing import Finding
 from wire import corpus, protobuf
 
 # Fields of SynthesisSummary that say how long it took.
@@ -21,10 +22,6 @@ SERVING = protobuf.message(f1=1)
 # Between two rounds of good calls. Each call has a connection of its own, whose port stays taken for a
 # minute after it: without a pause, long runs use up this machine's ports.
 PAUSE_SECONDS = 0.02
-
-
-class Finding(Exception):
-    """The server broke a promise."""
 
 
 class Judge:

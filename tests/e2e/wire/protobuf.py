@@ -33,9 +33,10 @@ def varint(value):
 
 def message(**fields):
     """A message of fields named f1, f2, ...: str and bytes are length-delimited, int a varint, float a
-    float."""
+    float. A list is a repeated field."""
     out = b""
-    for name, value in fields.items():
+    for name, value in ((name, one) for name, given in fields.items()
+                        for one in (given if isinstance(given, list) else [given])):
         if isinstance(value, str):
             value = value.encode()
         kind = VARINT

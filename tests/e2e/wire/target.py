@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 
 import tools
+from fuzzing import Finding
 from wire import corpus, judge, protobuf, rounds
 from wire.protobuf import message
 
@@ -45,7 +46,7 @@ class Target:
                    for method in methods_of(self.ports[port], patience)]
         unknown = sorted({method for _, method in offered} - set(requests))
         if unknown:
-            raise judge.Finding(f"{', '.join(unknown)}: give it real requests in "
+            raise Finding(f"{', '.join(unknown)}: give it real requests in "
                                 "tests/e2e/wire/corpus.py")
         return [(port, method, requests[method]) for port, method in offered]
 
@@ -54,13 +55,13 @@ class Target:
         try:
             code = self.server.stop()
         except subprocess.TimeoutExpired as error:
-            raise judge.Finding("SIGTERM: the server goes on") from error
+            raise Finding("SIGTERM: the server goes on") from error
         finally:
             self._resources.close()
         if self.complaints():
-            raise judge.Finding("the server reported an error")
+            raise Finding("the server reported an error")
         if code != 0:
-            raise judge.Finding(f"SIGTERM: the server ended with {code}, not 0")
+            raise Finding(f"SIGTERM: the server ended with {code}, not 0")
 
     def kill(self):
         self.server.kill()
@@ -107,7 +108,7 @@ def methods_of_service(port, service, patience):
     known = [method.split("/")[1] for method in corpus.requests_of_methods(tools.SOURCE)
              if method.startswith(f"{service}/")]
     if not known:
-        raise judge.Finding(f"{service}: give it real requests in tests/e2e/wire/corpus.py")
+        raise Finding(f"{service}: give it real requests in tests/e2e/wire/corpus.py")
     return known
 
 
@@ -115,5 +116,5 @@ def reflect(port, request, patience):
     status, answers = judge.call(port, f"{corpus.REFLECTION}/ServerReflectionInfo", request,
                                  patience)
     if status != "0":
-        raise judge.Finding(f"reflection: status {status}")
+        raise Finding(f"reflection: status {status}")
     return answers
