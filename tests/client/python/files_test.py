@@ -1,6 +1,5 @@
 """Reading and writing motion files through the program `duet`."""
 
-import contextlib
 import os
 import pathlib
 import tempfile
@@ -63,11 +62,6 @@ class FilesTest(unittest.TestCase):
         right = duet.read_motion(self.folder / "pair.csv", side="right")
         np.testing.assert_array_equal(right.positions, self.other.positions)
 
-    def test_two_people_as_bvh_are_two_files(self):
-        duet.write_motion(self.folder / "pair.bvh", self.hug, self.other)
-        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
-                         ["pair.follower.bvh", "pair.leader.bvh"])
-
     def test_a_page_shows_motions_side_by_side(self):
         duet.write_page(self.folder / "page.html", {"hug": self.hug,
                                                     "with a friend": (self.hug, self.other)},
@@ -97,11 +91,6 @@ class FilesTest(unittest.TestCase):
             duet.read_motion(self.folder / "one.obj")
         with self.assertRaisesRegex(duet.MotionFileError, "^resample_hz: .* got 2000$"):
             duet.read_motion(HUG, resample_hz=2000)
-
-    def test_file_name_may_look_like_a_flag(self):
-        self.enterContext(contextlib.chdir(self.folder))
-        duet.write_motion("--out.csv", self.hug)
-        self.assertEqual(duet.read_motion("--out.csv").frame_count, 91)
 
     def test_missing_program_explains_what_to_install(self):
         with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):

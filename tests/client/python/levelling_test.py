@@ -57,12 +57,6 @@ class LevellingTest(unittest.TestCase):
         self.assertEqual(weak.vertical.verdict, "unknown")
         self.assertFalse(to_proto(weak).HasField("up"))
 
-    def test_an_estimate_of_several_people_is_used_for_one(self):
-        camera = duet.estimate_vertical(tilted(self.dance, 15), tilted(self.hug, 15))
-        request = duet.SynthesisRequest(tilted(self.hug, 15), LABELS, level=camera)
-        self.assertIs(request.vertical, camera)
-        self.assertTrue(to_proto(request).HasField("up"))
-
     def test_the_result_reports_what_was_found(self):
         leader = tilted(self.dance, 15)
         reply = support.good_reply(leader, size=leader.frame_count)

@@ -21,12 +21,6 @@ class MotionTest(unittest.TestCase):
         with self.assertRaises(ValueError):
             motion.positions[0] = 1
 
-    def test_finds_joints_by_name(self):
-        motion = support.leader()
-        np.testing.assert_array_equal(motion.joint("left"), motion.positions[:, 1])
-        with self.assertRaisesRegex(KeyError, "expected one of root, left, right, got 'knee'"):
-            motion.joint("knee")
-
     def test_selects_and_reorders_joints(self):
         motion = support.leader()
         chosen = motion.select(["right", "root"])
@@ -37,29 +31,21 @@ class MotionTest(unittest.TestCase):
     def test_invalid_arguments_name_their_field(self):
         for changes, message in (
                 ({"positions": np.zeros((6, 9))}, r"positions: expected the shape \(frames.*\(6, 9\)"),
-                ({"positions": np.zeros((6, 3, 2))}, r"positions: .* got \(6, 3, 2\)"),
                 ({"positions": []}, r"positions: expected the shape .* got \(0,\)"),
-                ({"positions": np.zeros((6, 0, 3)), "joint_names": ()}, "positions: expected the shape"),
                 ({"positions": np.zeros((6, 4, 3))}, "positions: expected the 3 joints .* got 4"),
                 ({"positions": [[[1, 2, 3]] * 3, [[1, 2]] * 3]}, "positions: expected an array of num"),
                 ({"positions": np.full((6, 3, 3), "a")}, "positions: expected real numbers, got .*U1"),
-                ({"positions": np.zeros((6, 3, 3), complex)}, "positions: .*, got .*complex128"),
-                ({"positions": np.zeros((6, 3, 3), bool)}, "positions: .*, got .*bool"),
                 ({"positions": np.full((6, 3, 3), None)}, "positions: .*, got .*object"),
                 ({"joint_names": ("a", "b", "a")}, "joint_names: .*, got duplicates of a"),
                 ({"joint_names": "abc"}, "joint_names: expected a sequence of names, got 'abc'"),
                 ({"joint_names": None}, "joint_names: expected a sequence of names, got None"),
-                ({"joint_names": ("a", "", "c")}, "joint_names: expected a name for each joint"),
                 ({"joint_names": ("a", 2, "c")}, "joint_names: expected a name for each joint, got 2"),
                 ({"frame_rate_hz": 0}, "frame_rate_hz: expected a finite number above 0, got 0"),
-                ({"frame_rate_hz": -30}, "frame_rate_hz: .* got -30"),
                 ({"frame_rate_hz": np.nan}, "frame_rate_hz: .* got nan"),
-                ({"frame_rate_hz": np.inf}, "frame_rate_hz: .* got inf"),
                 ({"frame_rate_hz": 10**400}, "frame_rate_hz: expected a finite"),
                 ({"frame_rate_hz": "30"}, "frame_rate_hz: .* got '30'"),
                 ({"frame_rate_hz": True}, "frame_rate_hz: .* got True"),
                 ({"unit": "feet"}, "unit: expected one of metres, millimetres, .* got 'feet'"),
-                ({"unit": ["metres"]}, "unit: expected one of metres"),
                 ({"up_axis": "up"}, "up_axis: expected one of y-up, z-up, y-down, got 'up'")):
             with self.subTest(changes=list(changes)), self.assertRaisesRegex(ValueError, message):
                 support.leader(**changes)
@@ -72,11 +58,6 @@ class MotionTest(unittest.TestCase):
                     ValueError, rf"positions\[4, 1, 2\]: expected a finite float32, got {told} at "
                                 "frame 4, joint 'left', z$"):
                 support.leader(positions=positions)
-
-    def test_a_masked_value_counts_as_missing(self):
-        positions = np.ma.masked_equal(np.arange(54).reshape(6, 3, 3), 9 * 4 + 2)
-        with self.assertRaisesRegex(ValueError, "nan at frame 4, joint 'root', z"):
-            support.leader(positions=positions)
 
     def test_resamples_as_the_program_does(self):
         # The rule of ResampledFrameCount (tests/motion/resample_test.cc): the end is never cut off.

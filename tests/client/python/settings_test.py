@@ -37,13 +37,6 @@ class SettingsTest(unittest.TestCase):
         file.write_text(text, encoding="utf-8")
         return str(file)
 
-    def test_unset_and_empty_variables_leave_the_default(self):
-        with mock.patch.dict(os.environ, {"DUET_SERVER": "", "DUET_TLS": "false"}):
-            self.assertIsNone(_settings.text("SERVER"))
-            self.assertIsNone(_settings.seconds("TIMEOUT"))
-            self.assertIsNone(_settings.tls())
-            self.assertIsNone(_settings.token())
-
     def test_invalid_value_is_rejected_with_its_variable(self):
         for name, value, read, message in (
                 ("TIMEOUT", "soon", lambda: _settings.seconds("TIMEOUT"),
