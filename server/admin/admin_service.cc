@@ -25,33 +25,38 @@ namespace v1 = ::duet::admin::v1;
 
 constexpr std::size_t kLongestLabel = 63;
 
-// Checks the fields of a request: none is missing, and labels are 1 to 63 letters, digits, '-', '_'
-// and '.'.
-class Fields {
- public:
-  Fields& Name(const std::string& name) {
-    if (name.empty()) violations_.Malformed("name", "a model's name", "none");
-    return *this;
-  }
-  Fields& Version(uint32_t version) {
-    if (version == 0) violations_.Malformed("version", "a version of 1 or more", "none");
-    return *this;
-  }
-  Fields& Label(const std::string& label) {
-    const bool plain = std::all_of(label.begin(), label.end(), [](char c) {
-      return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.';
-    });
-    if (plain && !label.empty() && label.size() <= kLongestLabel) return *this;
-    violations_.Malformed(
-        "label", absl::StrCat("1 to ", kLongestLabel, " letters, digits, '-', '_' and '.'"),
-        base::Quoted(label));
-    return *this;
-  }
-  absl::Status status() const { return violations_.ToStatus(); }
+bool IsLabel(const std::string& text) {
+  return !text.empty() && text.size() <= kLongestLabel &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) {
+           return absl::ascii_isalnum(c) || c == '-' || c == '_' || c == '.';
+         });
+}
 
- private:
-  service::Violations violations_;
-};
+// Checks that a request has a name, a version and a label, as far as its type has such fields.
+absl::Status Check(const google::protobuf::Message& request) {
+  const google::protobuf::Descriptor& type = *request.GetDescriptor();
+  const google::protobuf::Reflection& reflection = *request.GetReflection();
+  service::Violations violations;
+  if (const auto* name = type.FindFieldByName("name")) {
+    if (reflection.GetString(request, name).empty()) {
+      violations.Malformed("name", "a model's name", "none");
+    }
+  }
+  if (const auto* field = type.FindFieldByName("label")) {
+    const std::string label = reflection.GetString(request, field);
+    if (!IsLabel(label)) {
+      violations.Malformed(
+          "label", absl::StrCat("1 to ", kLongestLabel, " letters, digits, '-', '_' and '.'"),
+          base::Quoted(label));
+    }
+  }
+  if (const auto* version = type.FindFieldByName("version")) {
+    if (reflection.GetUInt32(request, version) == 0) {
+      violations.Malformed("version", "a version of 1 or more", "none");
+    }
+  }
+  return violations.ToStatus();
+}
 
 v1::ModelState ToMessage(registry::ModelState state) {
   switch (state) {
@@ -169,13 +174,15 @@ AdminService::AdminService(AdminParts parts)
       pipeline_(kNoRawRequests, /*client_key=*/"", parts_.observers, *parts_.clock, parts_.guard,
                 security::Role::kAdmin) {}
 
-template <typename Request, typename Answer>
+template <typename Answer>
 grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& context,
-                                             const metrics::MethodInfo& method,
-                                             const Request& request, const absl::Status& valid,
+                                             const metrics::MethodInfo& method, When when,
+                                             const google::protobuf::Message& request,
                                              const Answer& answer) {
   const auto call = std::make_shared<Call>(context, method, request, *this);
-  const absl::Status admitted = call->status().ok() ? valid : call->status();
+  absl::Status admitted = call->status();
+  if (admitted.ok()) admitted = Check(request);
+  if (admitted.ok() && when == When::kServing) admitted = parts_.admission->CheckServing();
   if (admitted.ok()) {
     answer(call);
   } else {
@@ -184,14 +191,10 @@ grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& contex
   return call->reactor();
 }
 
-absl::Status AdminService::IfServing(const absl::Status& valid) const {
-  return valid.ok() ? parts_.admission->CheckServing() : valid;
-}
-
 grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* context,
                                                    const v1::ListModelsRequest* request,
                                                    v1::ListModelsResponse* response) {
-  return Open(*context, kListModels, *request, absl::OkStatus(), [&](const auto& call) {
+  return Open(*context, kListModels, When::kAlways, *request, [&](const auto& call) {
     *response =
         ToMessage(parts_.control->List(), parts_.control->skipped(), parts_.control->problems());
     call->Finish(absl::OkStatus());
@@ -201,30 +204,25 @@ grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* 
 grpc::ServerUnaryReactor* AdminService::LoadModel(grpc::CallbackServerContext* context,
                                                   const v1::LoadModelRequest* request,
                                                   v1::LoadModelResponse*) {
-  return Open(*context, kLoadModel, *request,
-              IfServing(Fields().Name(request->name()).Version(request->version()).status()),
-              [&](const auto& call) {
-                parts_.control->Load(request->name(), request->version(),
-                                     [call](const absl::Status& status) { call->Finish(status); });
-              });
+  return Open(*context, kLoadModel, When::kServing, *request, [&](const auto& call) {
+    parts_.control->Load(request->name(), request->version(),
+                         [call](const absl::Status& status) { call->Finish(status); });
+  });
 }
 
 grpc::ServerUnaryReactor* AdminService::UnloadModel(grpc::CallbackServerContext* context,
                                                     const v1::UnloadModelRequest* request,
                                                     v1::UnloadModelResponse*) {
-  return Open(*context, kUnloadModel, *request,
-              IfServing(Fields().Name(request->name()).Version(request->version()).status()),
-              [&](const auto& call) {
-                parts_.control->Unload(
-                    request->name(), request->version(),
-                    [call](const absl::Status& status) { call->Finish(status); });
-              });
+  return Open(*context, kUnloadModel, When::kServing, *request, [&](const auto& call) {
+    parts_.control->Unload(request->name(), request->version(),
+                           [call](const absl::Status& status) { call->Finish(status); });
+  });
 }
 
 grpc::ServerUnaryReactor* AdminService::Reload(grpc::CallbackServerContext* context,
                                                const v1::ReloadRequest* request,
                                                v1::ReloadResponse* response) {
-  return Open(*context, kReload, *request, IfServing(absl::OkStatus()), [&](const auto& call) {
+  return Open(*context, kReload, When::kServing, *request, [&](const auto& call) {
     // The response lives until the call ends.
     parts_.control->Reload([call, response](const absl::StatusOr<registry::ReloadReport>& report) {
       if (report.ok()) *response = ToMessage(*report);
@@ -236,23 +234,17 @@ grpc::ServerUnaryReactor* AdminService::Reload(grpc::CallbackServerContext* cont
 grpc::ServerUnaryReactor* AdminService::SetLabel(grpc::CallbackServerContext* context,
                                                  const v1::SetLabelRequest* request,
                                                  v1::SetLabelResponse*) {
-  return Open(
-      *context, kSetLabel, *request,
-      Fields().Name(request->name()).Label(request->label()).Version(request->version()).status(),
-      [&](const auto& call) {
-        call->Finish(
-            parts_.control->SetLabel(request->name(), request->label(), request->version()));
-      });
+  return Open(*context, kSetLabel, When::kAlways, *request, [&](const auto& call) {
+    call->Finish(parts_.registry->SetLabel(request->name(), request->label(), request->version()));
+  });
 }
 
 grpc::ServerUnaryReactor* AdminService::DeleteLabel(grpc::CallbackServerContext* context,
                                                     const v1::DeleteLabelRequest* request,
                                                     v1::DeleteLabelResponse*) {
-  return Open(*context, kDeleteLabel, *request,
-              Fields().Name(request->name()).Label(request->label()).status(),
-              [&](const auto& call) {
-                call->Finish(parts_.control->DeleteLabel(request->name(), request->label()));
-              });
+  return Open(*context, kDeleteLabel, When::kAlways, *request, [&](const auto& call) {
+    call->Finish(parts_.registry->DeleteLabel(request->name(), request->label()));
+  });
 }
 
 }  // namespace duet::server::admin

@@ -10,6 +10,7 @@
 #include "server/metrics/call_record.h"
 #include "server/metrics/json_log.h"
 #include "server/registry/model_manager.h"
+#include "server/registry/model_registry.h"
 #include "server/security/call_guard.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
@@ -21,6 +22,7 @@ namespace v1 = ::duet::admin::v1;
 // The dependencies of the service. Everything outlives the service and its calls.
 struct AdminParts {
   registry::ModelControl* control = nullptr;
+  registry::ModelRegistry* registry = nullptr;
   const service::Admission* admission = nullptr;  // knows whether the server serves
   metrics::JsonLog* log = nullptr;
   std::vector<metrics::CallObserver*> observers;
@@ -60,14 +62,15 @@ class AdminService final : public v1::Admin::CallbackService {
   // One call from its headers to its end.
   class Call;
 
-  // The common path of every call: counts and checks it. Passes it to `answer`, which ends it now
-  // or later, unless it is rejected. `valid`: whether the request's fields are.
-  template <typename Request, typename Answer>
+  enum class When { kAlways, kServing };
+
+  // The common path of every call: counts it and checks it and its request. Passes it to `answer`,
+  // which ends it now or later, unless it is rejected. `when`: kServing rejects it with UNAVAILABLE
+  // while the server does not serve.
+  template <typename Answer>
   grpc::ServerUnaryReactor* Open(grpc::CallbackServerContext& context,
-                                 const metrics::MethodInfo& method, const Request& request,
-                                 const absl::Status& valid, const Answer& answer);
-  // `valid`, or UNAVAILABLE while the server does not serve.
-  absl::Status IfServing(const absl::Status& valid) const;
+                                 const metrics::MethodInfo& method, When when,
+                                 const google::protobuf::Message& request, const Answer& answer);
 
   const AdminParts parts_;
   const service::CallPipeline pipeline_;

@@ -124,15 +124,13 @@ DuetServer::DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
       transport_(settings.max_transport_bytes()),
       scheduler_(batching::MakeBatcher(Batching(settings), common::Clock::Real(), &metrics_)),
       service_(Parts()),
-      control_(manager_, registry_, events_),
+      control_(manager_, events_),
       admin_(AdminParts()) {
   Configure(settings);
   control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); },
                           [this] { return secrets_->state(); }});
-  metrics_.SetCapacity({static_cast<int>(settings_.max_calls()),
-                        static_cast<int>(settings_.max_queued_windows()),
-                        static_cast<int>(settings_.workers())});
-  metrics_.SetBuild(DUET_VERSION);
+  metrics_.Describe(DUET_VERSION, settings_.max_calls(), settings_.max_queued_windows(),
+                    settings_.workers());
   metrics_.SetRead(ReadValues(sink));
 }
 
@@ -187,6 +185,7 @@ service::ServiceParts DuetServer::Parts() {
 admin::AdminParts DuetServer::AdminParts() {
   admin::AdminParts parts;
   parts.control = &control_;
+  parts.registry = &registry_;
   parts.admission = &admission_;
   parts.log = &log_;
   parts.observers = {&metrics_};

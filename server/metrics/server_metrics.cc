@@ -243,22 +243,19 @@ void ServerMetrics::Reloaded(bool ok) {
   reloads_.Add({{"result", ok ? "ok" : "failed"}}).Increment();
 }
 
-void ServerMetrics::SetCapacity(const Capacity& capacity) {
-  const auto set = [this](const char* name, const char* help, int value) {
-    NewGauges(name, help).Add({}).Set(value);
-  };
-  set("duet_max_calls", "Synthesize RPCs and live sessions that may be answered at a time.",
-      capacity.calls);
-  set("duet_max_queued_windows",
-      "First windows of RPCs that may wait for a worker, once for each candidate.",
-      capacity.queued_windows);
-  set("duet_workers", "Batches that may be evaluated at a time.", capacity.workers);
-}
-
-void ServerMetrics::SetBuild(const std::string& version) {
+void ServerMetrics::Describe(const std::string& version, std::uint32_t max_calls,
+                             std::uint32_t max_queued_windows, std::uint32_t workers) {
   NewGauges("duet_build_info", "1; the labels identify the program.")
       .Add({{"version", version}})
       .Set(1);
+  NewGauges("duet_max_calls", "Synthesize RPCs and live sessions that may be answered at a time.")
+      .Add({})
+      .Set(max_calls);
+  NewGauges("duet_max_queued_windows",
+            "First windows of RPCs that may wait for a worker, once for each candidate.")
+      .Add({})
+      .Set(max_queued_windows);
+  NewGauges("duet_workers", "Batches that may be evaluated at a time.").Add({}).Set(workers);
 }
 
 void ServerMetrics::SecretsReloaded(const std::string& kind, bool taken) {

@@ -23,13 +23,6 @@ namespace duet::server::metrics {
 // Returns the resident memory of this process; 0 if it cannot be read.
 std::uint64_t ResidentBytes();
 
-// Limits of the server.
-struct Capacity {
-  int calls = 0;
-  int queued_windows = 0;
-  int workers = 0;
-};
-
 // A model version that is served.
 struct ServedVersion {
   std::string model;
@@ -74,8 +67,9 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
 
   // Call before the first Render.
   void SetRead(ReadValues read) { read_ = std::move(read); }
-  void SetCapacity(const Capacity& capacity);
-  void SetBuild(const std::string& version);
+  // Sets what does not change: the version of the program and the limits of the server.
+  void Describe(const std::string& version, std::uint32_t max_calls,
+                std::uint32_t max_queued_windows, std::uint32_t workers);
 
   // Records that the files of one kind were read again, and accepted or rejected.
   void SecretsReloaded(const std::string& kind, bool taken);

@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+absl::Status Stopping() { return absl::CancelledError("the server is stopping"); }
+
 std::string SourceOf(absl::string_view name, uint32_t version) {
   return absl::StrCat(name, "/", version);
 }
@@ -49,8 +51,10 @@ std::vector<std::string> ModelManager::ApplyLabelsOf(absl::string_view name) {
   std::vector<VersionLabel> now;
   std::vector<std::string> problems;
   for (const VersionLabel& label : applied) {
-    if (!name.empty() && label.model != name) now.push_back(label);
-    if (!name.empty() && label.model != name) continue;
+    if (!name.empty() && label.model != name) {
+      now.push_back(label);
+      continue;
+    }
     const bool goes = std::none_of(wanted.begin(), wanted.end(), [&](const VersionLabel& other) {
       return other.model == label.model && other.label == label.label;
     });
@@ -128,9 +132,10 @@ absl::StatusOr<ReloadReport> ModelManager::Reload(const std::function<bool()>& s
 
 bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_type& folders,
                                const std::function<bool()>& stop, ReloadReport& report) {
+  Versions known = VersionsOf(name);
   for (const auto& [version, folder] : folders) {
-    if (IsUnloaded(name, version)) continue;
-    if (IsUnchanged(name, version, folder)) {
+    if (known[version].unloaded) continue;
+    if (IsUnchanged(known[version], folder)) {
       ++report.unchanged;
     } else {
       if (stop()) return false;
@@ -140,8 +145,15 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
   }
   // Moved first: a version without labels may be unloaded below.
   for (std::string& label : ApplyLabelsOf(name)) report.refused_labels.push_back(std::move(label));
-  for (const uint32_t version : ServedVersions(name)) {
-    if (folders.count(version) == 0) Retire(name, version, report);
+  for (const auto& [version, state] : VersionsOf(name)) {
+    if (!state.served || folders.count(version) > 0) continue;
+    const std::string source = SourceOf(name, version);
+    const absl::Status removed = Remove(name, version, /*by_operator=*/false);
+    if (removed.ok()) {
+      report.unloaded.push_back(source);
+    } else {
+      report.problems.push_back(absl::StrCat(source, " stays served: ", removed.message()));
+    }
   }
   ForgetWithout(folders, name);
   return true;
@@ -163,26 +175,15 @@ void ModelManager::ForgetWithout(const Folders::mapped_type& folders, const std:
   for (const std::string& source : forgotten) observer_.Forgotten(source);
 }
 
-bool ModelManager::IsUnloaded(const std::string& name, uint32_t version) const {
+ModelManager::Versions ModelManager::VersionsOf(const std::string& name) const {
   common::MutexLock lock(mutex_);
-  const Version* known = Find(name, version);
-  return known != nullptr && known->unloaded;
-}
-
-const ModelManager::Version* ModelManager::Find(const std::string& name, uint32_t version) const {
   const auto model = models_.find(name);
-  if (model == models_.end()) return nullptr;
-  const auto known = model->second.find(version);
-  return known == model->second.end() ? nullptr : &known->second;
+  return model == models_.end() ? Versions() : model->second;
 }
 
-bool ModelManager::IsUnchanged(const std::string& name, uint32_t version,
-                               const fs::path& folder) const {
-  const std::string files = FilesOf(folder);
-  common::MutexLock lock(mutex_);
-  const Version* known = Find(name, version);
-  return known != nullptr && known->served && known->error.empty() && !files.empty() &&
-         known->files == files;
+bool ModelManager::IsUnchanged(const Version& known, const fs::path& folder) {
+  return known.served && known.error.empty() && !known.files.empty() &&
+         known.files == FilesOf(folder);
 }
 
 absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
@@ -220,21 +221,17 @@ void ModelManager::Take(const std::string& name, uint32_t version, const LoadRep
   observer_.Loaded(report, served);
 }
 
-void ModelManager::Retire(const std::string& name, uint32_t version, ReloadReport& report) {
-  const absl::Status removed = registry_.Remove(name, version);
-  if (!removed.ok()) {
-    report.problems.push_back(
-        absl::StrCat(SourceOf(name, version), " stays served: ", removed.message()));
-    return;
-  }
+absl::Status ModelManager::Remove(const std::string& name, uint32_t version, bool by_operator) {
+  if (absl::Status status = registry_.Remove(name, version); !status.ok()) return status;
   {
     common::MutexLock lock(mutex_);
     Version& known = models_[name][version];
     known.served = false;
     known.error.clear();
+    known.unloaded = by_operator;
   }
   observer_.Unloaded(SourceOf(name, version));
-  report.unloaded.push_back(SourceOf(name, version));
+  return absl::OkStatus();
 }
 
 absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
@@ -260,27 +257,7 @@ absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
 absl::Status ModelManager::Unload(absl::string_view name, uint32_t version) {
   common::MutexLock working(work_mutex_);
   if (absl::Status status = CheckRepository(); !status.ok()) return status;
-  if (absl::Status status = registry_.Remove(name, version); !status.ok()) return status;
-  {
-    common::MutexLock lock(mutex_);
-    Version& known = models_[std::string(name)][version];
-    known.served = false;
-    known.error.clear();
-    known.unloaded = true;
-  }
-  observer_.Unloaded(SourceOf(name, version));
-  return absl::OkStatus();
-}
-
-std::vector<uint32_t> ModelManager::ServedVersions(const std::string& name) const {
-  common::MutexLock lock(mutex_);
-  std::vector<uint32_t> served;
-  const auto model = models_.find(name);
-  if (model == models_.end()) return served;
-  for (const auto& [version, known] : model->second) {
-    if (known.served) served.push_back(version);
-  }
-  return served;
+  return Remove(std::string(name), version, /*by_operator=*/true);
 }
 
 absl::Status ModelManager::CheckRepository() const {
@@ -340,12 +317,6 @@ std::vector<std::string> ModelManager::UnknownNames() const {
   }
   return unknown;
 }
-
-namespace {
-
-absl::Status Stopping() { return absl::CancelledError("the server is stopping"); }
-
-}  // namespace
 
 void ModelControl::AddReloadable(Reloadable reloadable) {
   common::MutexLock lock(mutex_);
@@ -419,15 +390,6 @@ void ModelControl::Load(std::string name, uint32_t version, Done done) {
 void ModelControl::Unload(std::string name, uint32_t version, Done done) {
   Post([this, name = std::move(name), version] { return manager_.Unload(name, version); },
        std::move(done));
-}
-
-absl::Status ModelControl::SetLabel(const std::string& name, const std::string& label,
-                                    uint32_t version) {
-  return registry_.SetLabel(name, label, version);
-}
-
-absl::Status ModelControl::DeleteLabel(const std::string& name, const std::string& label) {
-  return registry_.DeleteLabel(name, label);
 }
 
 }  // namespace duet::server::registry

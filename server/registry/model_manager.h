@@ -95,19 +95,17 @@ class ModelManager {
   std::vector<std::string> ApplyLabelsOf(absl::string_view name);
   // Forgets every version of a model that has no folder and is not served.
   void ForgetWithout(const Folders::mapped_type& folders, const std::string& name);
-  // Returns null if the version is unknown.
-  const Version* Find(const std::string& name, uint32_t version) const DUET_REQUIRES(mutex_);
-  bool IsUnloaded(const std::string& name, uint32_t version) const;
+  // A copy, so that it can be used without the lock.
+  Versions VersionsOf(const std::string& name) const;
   // Returns true if the served version is the one in `folder`. Returns false if the last load
   // failed, even if the previous files were restored: only a successful load clears the error.
-  bool IsUnchanged(const std::string& name, uint32_t version,
-                   const std::filesystem::path& folder) const;
+  static bool IsUnchanged(const Version& known, const std::filesystem::path& folder);
   absl::Status LoadFolder(const std::string& name, uint32_t version,
                           const std::filesystem::path& folder);
   void Take(const std::string& name, uint32_t version, const LoadReport& report,
             const std::string& files);
-  void Retire(const std::string& name, uint32_t version, ReloadReport& report);
-  std::vector<uint32_t> ServedVersions(const std::string& name) const;
+  // Stops serving a version: one that an operator unloads is not loaded again by a reload.
+  absl::Status Remove(const std::string& name, uint32_t version, bool by_operator);
   absl::Status CheckRepository() const;
 
   ModelRegistry& registry_;
@@ -143,8 +141,8 @@ class ModelControl {
   using Done = std::function<void(const absl::Status&)>;
 
   // The arguments outlive it.
-  ModelControl(ModelManager& manager, ModelRegistry& registry, ModelObserver& observer)
-      : manager_(manager), registry_(registry), observer_(observer) {}
+  ModelControl(ModelManager& manager, ModelObserver& observer)
+      : manager_(manager), observer_(observer) {}
 
   // Takes effect with the next Reload.
   void AddReloadable(Reloadable reloadable);
@@ -155,9 +153,6 @@ class ModelControl {
   void Load(std::string name, uint32_t version, Done done);
   void Unload(std::string name, uint32_t version, Done done);
 
-  // Like the methods of ModelRegistry.
-  absl::Status SetLabel(const std::string& name, const std::string& label, uint32_t version);
-  absl::Status DeleteLabel(const std::string& name, const std::string& label);
   std::vector<ModelStatus> List() const { return manager_.List(); }
   std::vector<SkippedFolder> skipped() const { return manager_.skipped(); }
   // Returns "name: reason" for everything reloadable whose content on disk was rejected, and for
@@ -181,7 +176,6 @@ class ModelControl {
   void Post(std::function<absl::Status()> work, Done done);
 
   ModelManager& manager_;
-  ModelRegistry& registry_;
   ModelObserver& observer_;
   mutable common::Mutex mutex_;
   std::vector<Entry> entries_ DUET_GUARDED_BY(mutex_);

@@ -85,8 +85,7 @@ TEST(ServerMetricsTest, CountsOnlyCallsOfListedCallers) {
 
 TEST(ServerMetricsTest, ReportsCapacityBuildAndTheQueueAtEveryScrape) {
   ServerMetrics metrics;
-  metrics.SetCapacity({128, 64, 2});
-  metrics.SetBuild("1.2.3");
+  metrics.Describe("1.2.3", 128, 64, 2);
   double length = 3;
   ReadValues read;
   read.queued_windows = [&] { return length; };

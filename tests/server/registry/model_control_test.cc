@@ -71,21 +71,21 @@ class ModelControlTest : public ::testing::Test {
 
 TEST_F(ModelControlTest, ReloadsWhileEverythingElseGoesOn) {
   Write("1");
-  ModelControl control(manager_, registry_, events_);
+  ModelControl control(manager_, events_);
   std::promise<absl::StatusOr<ReloadReport>> reloaded;
   control.Reload([&](const auto& report) { reloaded.set_value(report); });
   gate_.WaitUntilReached();
   ASSERT_EQ(control.List().size(), 1u);
   EXPECT_EQ(control.List()[0].state, ModelState::kLoading);
-  EXPECT_THAT(control.SetLabel("fake", "stable", 1),
+  EXPECT_THAT(registry_.SetLabel("fake", "stable", 1),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("not served")));
   gate_.Open();
   const absl::StatusOr<ReloadReport> report = reloaded.get_future().get();
   ASSERT_THAT(report, IsOk());
   EXPECT_THAT(report->loaded, ElementsAre("fake/1"));
   EXPECT_EQ(control.List()[0].state, ModelState::kServed);
-  EXPECT_THAT(control.SetLabel("fake", "stable", 1), IsOk());
-  EXPECT_THAT(control.DeleteLabel("fake", "stable"), IsOk());
+  EXPECT_THAT(registry_.SetLabel("fake", "stable", 1), IsOk());
+  EXPECT_THAT(registry_.DeleteLabel("fake", "stable"), IsOk());
   EXPECT_THAT(events_.reloaded, ElementsAre("ok"));
   EXPECT_EQ(events_.changed, 1);
 }
@@ -93,7 +93,7 @@ TEST_F(ModelControlTest, ReloadsWhileEverythingElseGoesOn) {
 TEST_F(ModelControlTest, ReloadsSettingsBeforeTheRepository) {
   Write("1");
   gate_.Open();
-  ModelControl control(manager_, registry_, events_);
+  ModelControl control(manager_, events_);
   std::vector<std::string> order;
   control.AddReloadable({"tokens", [&] {
                            order.push_back("tokens");
@@ -113,7 +113,7 @@ TEST_F(ModelControlTest, ReloadsSettingsBeforeTheRepository) {
 TEST_F(ModelControlTest, RejectedFileIsAProblemUntilItIsFixed) {
   Write("1");
   gate_.Open();
-  ModelControl control(manager_, registry_, events_);
+  ModelControl control(manager_, events_);
   absl::Status tokens = absl::InvalidArgumentError("line 3");
   absl::Status certificates;
   control.AddReloadable({"tokens", [&] { return tokens; }});
@@ -134,7 +134,7 @@ TEST_F(ModelControlTest, AReloadReportsNamesThatNoModelHas) {
   Write("1");
   gate_.Open();
   manager_.SetLabels({{"fak", "stable", 1}});
-  ModelControl control(manager_, registry_, events_);
+  ModelControl control(manager_, events_);
   EXPECT_THAT(
       Reload(control)->problems,
       ElementsAre(HasSubstr("version_labels[0].model: expected one of: fake, got \"fak\"")));
@@ -144,7 +144,7 @@ TEST_F(ModelControlTest, LoadsAndUnloadsOneAfterTheOther) {
   Write("1");
   Write("2");
   gate_.Open();
-  ModelControl control(manager_, registry_, events_);
+  ModelControl control(manager_, events_);
   std::promise<std::vector<absl::Status>> all;
   std::vector<absl::Status> statuses;
   const auto done = [&](const absl::Status& status) {
@@ -166,7 +166,7 @@ TEST_F(ModelControlTest, StopCancelsWorkThatHasNotStarted) {
   std::promise<absl::Status> second;
   std::promise<absl::Status> third;
   {
-    ModelControl control(manager_, registry_, events_);
+    ModelControl control(manager_, events_);
     control.Reload([&](const auto& report) { first.set_value(report.status()); });
     gate_.WaitUntilReached();
     control.Load("fake", 2, [&](const absl::Status& status) { second.set_value(status); });
