@@ -28,7 +28,7 @@ class Layer:
 MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
                 "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
-MEASURING = ("metrics", "baselines", "judge", "report", "experiments")
+MEASURING = ("metrics", "baselines", "judge", "report")
 SERVER = ("server common", "batching", "registry", "server metrics", "security",
           "server config", "service", "admin", "lifecycle")
 
@@ -74,10 +74,6 @@ LAYERS = (
           source_libraries=("torch",)),
     Layer("report", "model/evaluation/report",
           sees=("base", "motion", "dataset", "metrics")),
-    Layer("experiments", "model/evaluation/experiments",
-          sees=MOTION_FILES + MODELS + ("authoring", "body", "dataset", "metrics",
-                                        "baselines", "judge", "report"),
-          source_libraries=("torch",)),
     Layer("evaluation program", "model/evaluation/program",
           sees=MOTION_FILES + ("authoring", "body", "dataset", "engine", "checkpoint",
                                 "network", "torch engine", "training") + MEASURING),

@@ -15,7 +15,7 @@ readonly methods=class_mean,frozen_first_frame,nearest_neighbour,hmm,kzbh12,hk14
 readonly quality=velocity_error,bone_length_drift,jitter,skating_ratio,foot_slide_cm
 readonly touch=penetration_frequency,penetration_depth_m
 readonly judged=accuracy,fid,diversity
-readonly placed=afd,afd_squared,afd_m,afd_squared_m,root_aligned_afd,root_aligned_afd_m
+readonly placed=afd,afd_squared,afd_m,root_aligned_afd
 export OMP_NUM_THREADS=1
 
 readonly ablation_epochs=50
@@ -49,9 +49,6 @@ sampled() {
   local models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" \
     --runs "flow, seed 1=${runs}/flow-1" --runs "flow, seed 2=${runs}/flow-2" --id 14_samples
-  "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --starts none \
-    --untold-direction --id 14_samples_untold \
-    --title "Many answers to one leader, where the partner's direction is not told"
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --as-served \
     --id 15_samples_as_served --title "Many answers to one leader, as a server answers"
   "${bin}/duet-eval" told-apart --data "${data}" --out "${results}" "${models[@]}" --as-served
@@ -64,7 +61,7 @@ sampled() {
 measure() {
   local config named=("full=${runs}/ablation/default")
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
-    --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
+    --title "Methods: leave one subject out" --baselines "${methods}" --printed \
     --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \
     --metrics "${placed},${quality},${touch},${judged}"
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 12_as_served --as-served \

@@ -1,12 +1,12 @@
 """Draws the figures of result sections with matplotlib."""
 
-from report import latent, poses
+from report import latent
 
 # An SVG keeps its text as text, and the same data gives the same file.
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "duet", "font.size": 9, "axes.titlesize": 11,
          "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.spines.top": False,
          "axes.spines.right": False, "axes.axisbelow": True, "legend.frameon": False}
-DRAW = {"latent": latent.draw, "poses": poses.draw}
+DRAW = {"latent": latent.draw}
 
 
 def use_matplotlib():
@@ -26,8 +26,4 @@ def draw_plot(plot, folder, name):
     figure.savefig(folder / f"{name}.svg", bbox_inches="tight", metadata={"Date": None})
     figure.savefig(folder / f"{name}.png", bbox_inches="tight", dpi=300)
     pyplot.close(figure)
-    files = [f"{name}.svg"]
-    if plot["kind"] == "poses":
-        poses.animate(plot, folder / f"{name}_moving.gif")
-        files.append(f"{name}_moving.gif")
-    return files, remark
+    return [f"{name}.svg"], remark

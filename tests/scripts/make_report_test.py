@@ -15,8 +15,6 @@ from report.sections import SectionError, read_sections
 
 def section(section_id="10_folds"):
     """A section with a table and a figure."""
-    pose = [[0, 1, 0], [0, 1.6, 0], [-0.2, 0.5, 0]]
-    people = {"leader": [pose] * 12, "follower": [[[x, y, z + 2] for x, y, z in pose]] * 12}
     return {
         "format_version": 1, "id": section_id, "title": "Methods & classes", "text": ["First <paragraph>."],
         "tables": [{
@@ -25,9 +23,9 @@ def section(section_id="10_folds"):
                      {"name": "frozen_first_frame", "printed": False, "values": [0.7, None]}],
             "notes": ["lower is better"], "decimals": 3, "best": "lowest"}],
         "figures": [{"name": section_id + "_curve", "caption": "A curve of \"errors\".", "plot": {
-            "kind": "poses", "title": "kick", "frame_rate_hz": 15, "root": 0, "head": 1,
-            "bones": [{"parent": 0, "child": 1, "side": "middle"}, {"parent": 0, "child": 2, "side": "left"}],
-            "pairs": [{"name": "captured", **people}]}}],
+            "kind": "latent", "title": "ours", "class_names": ["kick", "hug"], "classes": [0] * 10 + [1] * 10,
+            "perplexity": 30, "seed": 1,
+            "features": [[float(i % 10), 0.0 if i < 10 else 100.0, 1.0] for i in range(20)]}}],
         "settings": [{"name": "data", "value": "SBU"}], "command": "duet-eval folds --data DIR", "date": "2024-02-29"}
 
 

@@ -40,22 +40,12 @@ StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Seq
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence);
 
-// Transforms a follower from the standard coordinates of its sequence to the world.
-// Shapes: follower [frames, 3 joints].
-motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
-                              const Rows& follower);
-
 // Shapes: rows [frames, 3 joints].
 Rows ToRows(const motion::Poses& poses);
 motion::Poses FromRows(const Rows& rows);
 
 // Resamples a motion linearly to another number of frames. Both numbers are at least 1.
 Rows StretchTo(const Rows& motion, Eigen::Index frames);
-
-// The mean distance of matched rows along the best monotone matching of two motions (dynamic time
-// warping: steps in either or both; first and last rows are matched). Requires the same number of
-// columns and at least one row each.
-double TimeWarpedDistance(const Rows& a, const Rows& b);
 
 // Squared distances between rows. Shapes: returns [a rows, b rows].
 Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b);
@@ -81,9 +71,8 @@ class PoseSpace {
 // one matrix.
 Rows StackRows(const std::vector<Rows>& parts);
 
-// The cues, or the followers, of pairs, one below the other. Requires at least one pair.
-Rows StackCues(const std::vector<StandardPair>& pairs);
-Rows StackFollowers(const std::vector<StandardPair>& pairs);
+// One part of every pair, one below the other. Requires at least one pair.
+Rows Stack(const std::vector<StandardPair>& pairs, Rows StandardPair::*part);
 
 // Draws an index with a probability proportional to its weight. Weights are >= 0 and at least one
 // is > 0.

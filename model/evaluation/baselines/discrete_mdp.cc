@@ -67,7 +67,8 @@ struct Tables {
 class DiscreteMdp : public ClassModel {
  public:
   explicit DiscreteMdp(const std::vector<StandardPair>& pairs) {
-    const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
+    const Rows cues = Stack(pairs, &StandardPair::cues),
+               poses = Stack(pairs, &StandardPair::follower);
     leader_ = PoseSpace(cues, kComponents);
     follower_ = PoseSpace(poses, kComponents);
     leader_centres_ = KMeans(leader_.Project(cues), kLeaderStates, kSeed);

@@ -60,7 +60,8 @@ Rows FillBetween(const Rows& kept, Eigen::Index n, Eigen::Index rows) {
 class KernelRl : public ClassModel {
  public:
   explicit KernelRl(const std::vector<StandardPair>& pairs) {
-    const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
+    const Rows cues = Stack(pairs, &StandardPair::cues),
+               poses = Stack(pairs, &StandardPair::follower);
     leader_ = PoseSpace(cues, kComponents);
     follower_ = PoseSpace(poses, kComponents);
     stride_ = (cues.rows() + kMostSamples - 1) / kMostSamples;

@@ -106,7 +106,8 @@ struct Rollouts {
 class MaxEntIoc : public ClassModel {
  public:
   explicit MaxEntIoc(const std::vector<StandardPair>& pairs) {
-    const Rows all_cues = StackCues(pairs), all_poses = StackFollowers(pairs);
+    const Rows all_cues = Stack(pairs, &StandardPair::cues),
+               all_poses = Stack(pairs, &StandardPair::follower);
     leader_ = PoseSpace(all_cues, kLeaderComponents);
     follower_ = PoseSpace(all_poses, kPoseComponents);
     const Rows cues = leader_.Project(all_cues), poses = follower_.Project(all_poses);

@@ -9,16 +9,9 @@ namespace {
 
 class ClassMean : public ClassModel {
  public:
-  explicit ClassMean(const std::vector<StandardPair>& pairs) {
-    // Each frame has the same weight, as in the metric.
-    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(pairs[0].follower.cols());
-    double frames = 0;
-    for (const StandardPair& pair : pairs) {
-      sum += pair.follower.colwise().sum();
-      frames += static_cast<double>(pair.follower.rows());
-    }
-    mean_ = sum / frames;
-  }
+  // Each frame has the same weight, as in the metric.
+  explicit ClassMean(const std::vector<StandardPair>& pairs)
+      : mean_(Stack(pairs, &StandardPair::follower).colwise().mean()) {}
 
   Rows Predict(const StandardPair& leader) const override {
     return mean_.replicate(leader.leader.rows(), 1);
@@ -27,6 +20,36 @@ class ClassMean : public ClassModel {
  private:
   Eigen::RowVectorXd mean_;
 };
+
+// A matching's cost so far and its number of matched rows.
+struct Path {
+  double cost = std::numeric_limits<double>::infinity();
+  int length = 0;
+};
+
+const Path& Cheapest(const Path& a, const Path& b, const Path& c) {
+  const Path& ab = a.cost <= b.cost ? a : b;
+  return ab.cost <= c.cost ? ab : c;
+}
+
+// The mean distance of matched rows along the best monotone matching of two motions (dynamic time
+// warping: steps in either or both; first and last rows are matched).
+double TimeWarpedDistance(const Rows& a, const Rows& b) {
+  const size_t width = static_cast<size_t>(b.rows());
+  // One row of the table at a time; index 0 stands for "before the first row of b".
+  std::vector<Path> previous(width + 1), current(width + 1);
+  previous[0].cost = 0;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    current[0] = Path{};
+    for (size_t j = 1; j <= width; ++j) {
+      const Path& from = Cheapest(previous[j - 1], previous[j], current[j - 1]);
+      const double distance = (a.row(i) - b.row(static_cast<Eigen::Index>(j) - 1)).norm();
+      current[j] = {from.cost + distance, from.length + 1};
+    }
+    std::swap(previous, current);
+  }
+  return previous[width].cost / previous[width].length;
+}
 
 class NearestNeighbour : public ClassModel {
  public:
@@ -49,17 +72,21 @@ class NearestNeighbour : public ClassModel {
 };
 
 constexpr double kLogTwoPi = 1.8378770664093453;
+constexpr int kLeaderComponents = 4, kFollowerComponents = 8;
+constexpr int kStates = 3;
+constexpr int kIterations = 15;          // of EM
+constexpr double kPriorWeight = 50;      // weight of the pooled diagonal covariance, in samples
+constexpr double kLeastVariance = 1e-4;  // added to every variance
 // Pseudo-counts that keep every start and every transition possible.
-constexpr double kStartCount = 0.1;
-constexpr double kTransitionCount = 0.1;
+constexpr double kStartCount = 0.1, kTransitionCount = 0.1;
 
 // Every sequence cut into as many pieces of the same length as there are states.
-std::vector<Rows> EvenCut(const std::vector<Rows>& sequences, int states) {
+std::vector<Rows> EvenCut(const std::vector<Rows>& sequences) {
   std::vector<Rows> posteriors;
   for (const Rows& sequence : sequences) {
-    Rows posterior = Rows::Zero(sequence.rows(), states);
+    Rows posterior = Rows::Zero(sequence.rows(), kStates);
     for (Eigen::Index t = 0; t < sequence.rows(); ++t) {
-      posterior(t, t * states / sequence.rows()) = 1;
+      posterior(t, t * kStates / sequence.rows()) = 1;
     }
     posteriors.push_back(std::move(posterior));
   }
@@ -68,8 +95,7 @@ std::vector<Rows> EvenCut(const std::vector<Rows>& sequences, int states) {
 
 // Transition counts of a hard assignment of frames to states.
 Eigen::MatrixXd CountJumps(const std::vector<Rows>& posteriors) {
-  const Eigen::Index states = posteriors[0].cols();
-  Eigen::MatrixXd jumps = Eigen::MatrixXd::Zero(states, states);
+  Eigen::MatrixXd jumps = Eigen::MatrixXd::Zero(kStates, kStates);
   for (const Rows& posterior : posteriors) {
     const Eigen::Index steps = posterior.rows() - 1;
     jumps += posterior.topRows(steps).transpose() * posterior.bottomRows(steps);
@@ -77,8 +103,8 @@ Eigen::MatrixXd CountJumps(const std::vector<Rows>& posteriors) {
   return jumps;
 }
 
-Eigen::MatrixXd RowsToProbabilities(const Eigen::MatrixXd& counts, double pseudo_count) {
-  const Eigen::MatrixXd padded = counts.array() + pseudo_count;
+Eigen::MatrixXd RowsToProbabilities(const Eigen::MatrixXd& counts) {
+  const Eigen::MatrixXd padded = counts.array() + kTransitionCount;
   return padded.array().colwise() / padded.rowwise().sum().array();
 }
 
@@ -93,34 +119,52 @@ Eigen::RowVectorXd PooledVariance(const std::vector<Rows>& sequences) {
   return (squares / frames - (sum / frames).cwiseAbs2()).cwiseMax(0);
 }
 
-struct GaussianHmmOptions {
-  int states = 3;
-  int iterations = 15;           // EM iterations
-  double prior_weight = 50;      // weight of the pooled diagonal covariance, in samples
-  double least_variance = 1e-4;  // added to every variance
-};
-
-// A hidden Markov model with Gaussian outputs of full covariance.
+// A hidden Markov model of leader and follower together with Gaussian outputs of full covariance.
+// The answer is the expected follower given the whole leader.
 //
 // Source: Rabiner 1989 (forward-backward, Baum-Welch); regression from a part of the output on the
 // rest as in Gaussian mixture regression (Calinon et al. 2010).
-// Shapes: sequences of [frames, values]; frames may differ.
-class GaussianHmm {
+class Hmm : public ClassModel {
  public:
-  GaussianHmm() = default;
-  // Initialised by cutting every sequence into `states` equal pieces. Requires at least one
-  // sequence of at least one frame.
-  GaussianHmm(const std::vector<Rows>& sequences, const GaussianHmmOptions& options);
+  // Initialised by cutting every sequence into equal pieces.
+  explicit Hmm(const std::vector<StandardPair>& pairs)
+      : leader_(Stack(pairs, &StandardPair::cues), kLeaderComponents),
+        follower_(Stack(pairs, &StandardPair::follower), kFollowerComponents) {
+    std::vector<Rows> sequences;
+    for (const StandardPair& pair : pairs) {
+      Rows both(pair.cues.rows(), leader_.dimensions() + follower_.dimensions());
+      both << leader_.Project(pair.cues), follower_.Project(pair.follower);
+      sequences.push_back(std::move(both));
+    }
+    std::vector<Rows> posteriors = EvenCut(sequences);
+    Maximise(sequences, posteriors);
+    chain_.step = RowsToProbabilities(CountJumps(posteriors));
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      Eigen::MatrixXd jumps = Eigen::MatrixXd::Zero(kStates, kStates);
+      for (size_t i = 0; i < sequences.size(); ++i) {
+        posteriors[i] = SumOverPaths(chain_, LogDensities(sequences[i]), &jumps).states;
+      }
+      Maximise(sequences, posteriors);
+      chain_.step = RowsToProbabilities(jumps);
+    }
+  }
 
-  int state_count() const { return static_cast<int>(states_.size()); }
-
-  // The probability of each state in each frame, given the first `known.cols()` values of all
-  // frames. Shapes: returns [frames, states].
-  Rows Posterior(const Rows& known) const;
-
-  // The expected remaining values of each frame, given the first ones of all frames.
-  // Shapes: known [frames, n]; returns [frames, values - n].
-  Rows ExpectRest(const Rows& known) const;
+  Rows Predict(const StandardPair& leader) const override {
+    const Rows known = leader_.Project(leader.cues);
+    const Rows posterior = SumOverPaths(chain_, LogDensities(known)).states;
+    const Eigen::Index n = known.cols(), rest = states_[0].mean.size() - n;
+    Rows expected = Rows::Zero(known.rows(), rest);
+    for (int k = 0; k < kStates; ++k) {
+      const State& state = states_[k];
+      // mean_b + S_ba S_aa^-1 (a - mean_a), one row a frame.
+      const Eigen::LLT<Eigen::MatrixXd> factor(state.covariance.topLeftCorner(n, n));
+      const Eigen::MatrixXd gain = factor.solve(state.covariance.topRightCorner(n, rest));
+      const Rows conditional =
+          ((known.rowwise() - state.mean.head(n)) * gain).rowwise() + state.mean.tail(rest);
+      expected += posterior.col(k).asDiagonal() * conditional;
+    }
+    return follower_.Reconstruct(expected);
+  }
 
  private:
   struct State {
@@ -128,117 +172,52 @@ class GaussianHmm {
     Eigen::MatrixXd covariance;
   };
 
-  void Maximise(const std::vector<Rows>& sequences, const std::vector<Rows>& posteriors,
-                const GaussianHmmOptions& options);
+  void Maximise(const std::vector<Rows>& sequences, const std::vector<Rows>& posteriors) {
+    // A few samples do not determine a full covariance: the pooled diagonal one adds some.
+    const Eigen::RowVectorXd prior = PooledVariance(sequences);
+    chain_.start = Eigen::RowVectorXd::Constant(kStates, kStartCount);
+    for (const Rows& posterior : posteriors) chain_.start += posterior.row(0);
+    chain_.start /= chain_.start.sum();
+    for (int k = 0; k < kStates; ++k) {
+      State& state = states_[k];
+      double weight = 0;
+      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(prior.size());
+      for (size_t i = 0; i < sequences.size(); ++i) {
+        weight += posteriors[i].col(k).sum();
+        sum += posteriors[i].col(k).transpose() * sequences[i];
+      }
+      // A state without frames keeps its parameters.
+      if (weight > 0) state.mean = sum / weight;
+      if (state.mean.size() == 0) state.mean = sum;
+      state.covariance = kPriorWeight * prior.asDiagonal().toDenseMatrix();
+      for (size_t i = 0; i < sequences.size(); ++i) {
+        const Rows centred = sequences[i].rowwise() - state.mean;
+        state.covariance += centred.transpose() * posteriors[i].col(k).asDiagonal() * centred;
+      }
+      state.covariance /= weight + kPriorWeight;
+      state.covariance.diagonal().array() += kLeastVariance;
+    }
+  }
+
   // Log densities of rows holding the first values. Shapes: [frames, n] to [frames, states].
-  Rows LogDensities(const Rows& known) const;
-
-  std::vector<State> states_;
-  ChainWeights chain_;
-};
-
-GaussianHmm::GaussianHmm(const std::vector<Rows>& sequences, const GaussianHmmOptions& options) {
-  const Eigen::Index states = options.states;
-  states_.resize(static_cast<size_t>(options.states));
-  std::vector<Rows> posteriors = EvenCut(sequences, options.states);
-  Maximise(sequences, posteriors, options);
-  chain_.step = RowsToProbabilities(CountJumps(posteriors), kTransitionCount);
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    Eigen::MatrixXd jumps = Eigen::MatrixXd::Zero(states, states);
-    for (size_t i = 0; i < sequences.size(); ++i) {
-      posteriors[i] = SumOverPaths(chain_, LogDensities(sequences[i]), &jumps).states;
+  Rows LogDensities(const Rows& known) const {
+    const Eigen::Index n = known.cols();
+    Rows log_densities(known.rows(), kStates);
+    for (int k = 0; k < kStates; ++k) {
+      const State& state = states_[k];
+      const Eigen::LLT<Eigen::MatrixXd> factor(state.covariance.topLeftCorner(n, n));
+      const Eigen::MatrixXd centred = (known.rowwise() - state.mean.head(n)).transpose();
+      const Eigen::MatrixXd white = factor.matrixL().solve(centred);
+      const double log_root = Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() +
+                              0.5 * static_cast<double>(n) * kLogTwoPi;
+      log_densities.col(k) = -0.5 * white.colwise().squaredNorm().transpose().array() - log_root;
     }
-    Maximise(sequences, posteriors, options);
-    chain_.step = RowsToProbabilities(jumps, kTransitionCount);
-  }
-}
-
-void GaussianHmm::Maximise(const std::vector<Rows>& sequences, const std::vector<Rows>& posteriors,
-                           const GaussianHmmOptions& options) {
-  // A few samples do not determine a full covariance: the pooled diagonal one adds some.
-  const Eigen::RowVectorXd prior = PooledVariance(sequences);
-  chain_.start = Eigen::RowVectorXd::Constant(options.states, kStartCount);
-  for (const Rows& posterior : posteriors) chain_.start += posterior.row(0);
-  chain_.start /= chain_.start.sum();
-  for (int k = 0; k < options.states; ++k) {
-    State& state = states_[static_cast<size_t>(k)];
-    double weight = 0;
-    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(prior.size());
-    for (size_t i = 0; i < sequences.size(); ++i) {
-      weight += posteriors[i].col(k).sum();
-      sum += posteriors[i].col(k).transpose() * sequences[i];
-    }
-    // A state without frames keeps its parameters.
-    if (weight > 0) state.mean = sum / weight;
-    if (state.mean.size() == 0) state.mean = sum;
-    state.covariance = options.prior_weight * prior.asDiagonal().toDenseMatrix();
-    for (size_t i = 0; i < sequences.size(); ++i) {
-      const Rows centred = sequences[i].rowwise() - state.mean;
-      state.covariance += centred.transpose() * posteriors[i].col(k).asDiagonal() * centred;
-    }
-    state.covariance /= weight + options.prior_weight;
-    state.covariance.diagonal().array() += options.least_variance;
-  }
-}
-
-Rows GaussianHmm::LogDensities(const Rows& known) const {
-  const Eigen::Index n = known.cols();
-  Rows log_densities(known.rows(), state_count());
-  for (int k = 0; k < state_count(); ++k) {
-    const State& state = states_[static_cast<size_t>(k)];
-    const Eigen::LLT<Eigen::MatrixXd> factor(state.covariance.topLeftCorner(n, n));
-    const Eigen::MatrixXd centred = (known.rowwise() - state.mean.head(n)).transpose();
-    const Eigen::MatrixXd white = factor.matrixL().solve(centred);
-    const double log_root = Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() +
-                            0.5 * static_cast<double>(n) * kLogTwoPi;
-    log_densities.col(k) = -0.5 * white.colwise().squaredNorm().transpose().array() - log_root;
-  }
-  return log_densities;
-}
-
-Rows GaussianHmm::Posterior(const Rows& known) const {
-  return SumOverPaths(chain_, LogDensities(known)).states;
-}
-
-Rows GaussianHmm::ExpectRest(const Rows& known) const {
-  const Rows posterior = Posterior(known);
-  const Eigen::Index n = known.cols(), rest = states_[0].mean.size() - n;
-  Rows expected = Rows::Zero(known.rows(), rest);
-  for (int k = 0; k < state_count(); ++k) {
-    const State& state = states_[static_cast<size_t>(k)];
-    // mean_b + S_ba S_aa^-1 (a - mean_a), one row a frame.
-    const Eigen::LLT<Eigen::MatrixXd> factor(state.covariance.topLeftCorner(n, n));
-    const Eigen::MatrixXd gain = factor.solve(state.covariance.topRightCorner(n, rest));
-    const Rows conditional =
-        ((known.rowwise() - state.mean.head(n)) * gain).rowwise() + state.mean.tail(rest);
-    expected += posterior.col(k).asDiagonal() * conditional;
-  }
-  return expected;
-}
-
-constexpr int kLeaderComponents = 4, kFollowerComponents = 8;
-
-class Hmm : public ClassModel {
- public:
-  explicit Hmm(const std::vector<StandardPair>& pairs)
-      : leader_(StackCues(pairs), kLeaderComponents),
-        follower_(StackFollowers(pairs), kFollowerComponents) {
-    std::vector<Rows> sequences;
-    for (const StandardPair& pair : pairs) {
-      Rows both(pair.cues.rows(), leader_.dimensions() + follower_.dimensions());
-      both << leader_.Project(pair.cues), follower_.Project(pair.follower);
-      sequences.push_back(std::move(both));
-    }
-    hmm_ = GaussianHmm(sequences, {});
+    return log_densities;
   }
 
-  Rows Predict(const StandardPair& leader) const override {
-    return follower_.Reconstruct(hmm_.ExpectRest(leader_.Project(leader.cues)));
-  }
-
- private:
   PoseSpace leader_, follower_;
-  GaussianHmm hmm_;
+  State states_[kStates];
+  ChainWeights chain_;
 };
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/sha256.h"
 #include "model/base/status_macros.h"
 #include "model/motion/standardise.h"
 #include "model/network/batch.h"
@@ -18,7 +17,6 @@ namespace duet::evaluation::judge {
 
 struct MotionClassifier::Model {
   std::vector<network::Discriminator> members;
-  std::string hash;
   Sees sees = Sees::kFollower;
 };
 
@@ -206,17 +204,6 @@ network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
   return network;
 }
 
-std::string HashOf(const std::vector<network::Discriminator>& members) {
-  std::string bytes;
-  for (const network::Discriminator& network : members) {
-    for (const torch::Tensor& parameter : network->parameters()) {
-      const torch::Tensor values = parameter.detach().contiguous();
-      bytes.append(reinterpret_cast<const char*>(values.data_ptr<float>()), values.nbytes());
-    }
-  }
-  return base::Sha256Hex(bytes);
-}
-
 absl::Status CheckMotions(const dataset::Dataset& dataset,
                           const std::vector<metrics::ScoredMotion>& motions) {
   std::vector<int> counts(dataset.classes.size());
@@ -245,40 +232,27 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(
     member.seed = options.seed * static_cast<uint64_t>(options.members) + static_cast<uint64_t>(m);
     model->members.push_back(TrainNetwork(dataset, sequences, member));
   }
-  model->hash = HashOf(model->members);
   return MotionClassifier(std::move(model));
 }
 
-std::vector<std::vector<float>> MotionClassifier::Probabilities(
+metrics::JudgedFold MotionClassifier::Judge(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
   torch::NoGradGuard no_grad;
-  std::vector<std::vector<float>> rows;
-  for (const MotionBatch& batch :
-       Batches(dataset, WithFollowers(dataset, motions), kTestBatch, model_->sees)) {
-    std::vector<torch::Tensor> probabilities;
+  metrics::JudgedFold judged;
+  const std::vector<dataset::Sequence> sequences = WithFollowers(dataset, motions);
+  for (const dataset::Sequence& sequence : sequences) {
+    judged.classes.push_back(sequence.interaction_class);
+  }
+  for (const MotionBatch& batch : Batches(dataset, sequences, kTestBatch, model_->sees)) {
+    std::vector<torch::Tensor> probabilities, features;
     for (network::Discriminator& network : model_->members) {
       probabilities.push_back(network->forward(batch.motion, batch.lengths).softmax(1));
-    }
-    network::AppendRows(torch::stack(probabilities).mean(0), &rows);
-  }
-  return rows;
-}
-
-metrics::FeatureSet MotionClassifier::Features(
-    const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
-  torch::NoGradGuard no_grad;
-  metrics::FeatureSet rows;
-  for (const MotionBatch& batch :
-       Batches(dataset, WithFollowers(dataset, motions), kTestBatch, model_->sees)) {
-    std::vector<torch::Tensor> features;
-    for (network::Discriminator& network : model_->members) {
       features.push_back(network->Features(batch.motion, batch.lengths));
     }
-    network::AppendRows(torch::cat(features, 1), &rows);
+    network::AppendRows(torch::stack(probabilities).mean(0), &judged.probabilities);
+    network::AppendRows(torch::cat(features, 1), &judged.features);
   }
-  return rows;
+  return judged;
 }
-
-const std::string& MotionClassifier::hash() const { return model_->hash; }
 
 }  // namespace duet::evaluation::judge

@@ -54,16 +54,11 @@ class MotionClassifier {
                                                 const std::vector<metrics::ScoredMotion>& motions,
                                                 const MotionClassifierOptions& options);
 
-  // Shapes: returns [motions][classes]; every row sums to 1.
-  std::vector<std::vector<float>> Probabilities(
-      const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const;
-  // The second layer's output averaged over the frames, the members' side by side. Shapes: returns
-  // [motions][members * 2 hidden].
-  metrics::FeatureSet Features(const dataset::Dataset& dataset,
-                               const std::vector<metrics::ScoredMotion>& motions) const;
-
-  // SHA-256 of all weights, in hexadecimal: identifies the extractor of a figure.
-  const std::string& hash() const;
+  // Judges motions, each requested in its sequence's class. The probabilities of a motion sum to 1.
+  // Its features are the second layer's output averaged over the frames, the members' side by side:
+  // members * 2 hidden.
+  metrics::JudgedFold Judge(const dataset::Dataset& dataset,
+                            const std::vector<metrics::ScoredMotion>& motions) const;
 
  private:
   struct Model;

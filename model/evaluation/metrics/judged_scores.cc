@@ -7,10 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "absl/status/status.h"
-#include "absl/strings/str_cat.h"
 #include "model/base/statistics.h"
-#include "model/base/status_macros.h"
 
 namespace duet::evaluation::metrics {
 namespace {
@@ -22,21 +19,6 @@ double SquaredDistance(const std::vector<float>& a, const std::vector<float>& b)
     sum += difference * difference;
   }
   return sum;
-}
-
-absl::Status CheckFeatures(const char* set, const FeatureSet& features) {
-  if (features.size() < 2) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("features ", set, ": expected at least 2 samples, got ", features.size()));
-  }
-  for (size_t i = 0; i < features.size(); ++i) {
-    if (!std::all_of(features[i].begin(), features[i].end(),
-                     [](float value) { return std::isfinite(value); })) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("features ", set, "[", i, "]: expected finite values, got others"));
-    }
-  }
-  return absl::OkStatus();
 }
 
 // A Gaussian as its mean and a factor R with covariance R^T R.
@@ -78,22 +60,19 @@ FeatureSet OfClass(const JudgedFold& fold, int wanted) {
 
 // The mean over the folds whose two sets, selected by `select`, have enough motions.
 template <typename Select>
-absl::StatusOr<double> MeanFrechet(const std::vector<JudgedFold>& made,
-                                   const std::vector<JudgedFold>& captured, Select select) {
+double MeanFrechet(const std::vector<JudgedFold>& made, const std::vector<JudgedFold>& captured,
+                   Select select) {
   std::vector<double> distances;
   for (size_t fold = 0; fold < made.size(); ++fold) {
     const FeatureSet a = select(made[fold]), b = select(captured[fold]);
-    if (std::min(a.size(), b.size()) < kLeastMotions) continue;
-    DUET_TRY(distances.emplace_back(), FrechetDistance(a, b));
+    if (std::min(a.size(), b.size()) >= kLeastMotions) distances.push_back(FrechetDistance(a, b));
   }
   return base::Mean(distances);
 }
 
 }  // namespace
 
-absl::StatusOr<double> FrechetDistance(const FeatureSet& a, const FeatureSet& b) {
-  DUET_RETURN_IF_ERROR(CheckFeatures("a", a));
-  DUET_RETURN_IF_ERROR(CheckFeatures("b", b));
+double FrechetDistance(const FeatureSet& a, const FeatureSet& b) {
   const Gaussian first = Fit(a), second = Fit(b);
   const Eigen::BDCSVD<Eigen::MatrixXd> svd(first.factor * second.factor.transpose());
   const double distance = (first.mean - second.mean).squaredNorm() + first.factor.squaredNorm() +
@@ -112,12 +91,8 @@ double Diversity(const FeatureSet& features) {
   return pairs == 0 ? 0 : sum / pairs;
 }
 
-absl::StatusOr<double> NeighbourAccuracy(const FeatureSet& features,
-                                         const std::vector<int>& classes) {
-  if (features.size() < 2) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("features: expected at least 2 vectors, got ", features.size()));
-  }
+double NeighbourAccuracy(const FeatureSet& features, const std::vector<int>& classes) {
+  if (features.size() < kLeastMotions) return NAN;
   double right = 0;
   for (size_t i = 0; i < features.size(); ++i) {
     size_t nearest = i == 0 ? 1 : 0;
@@ -132,71 +107,41 @@ absl::StatusOr<double> NeighbourAccuracy(const FeatureSet& features,
   return right / static_cast<double>(features.size());
 }
 
-Confusion::Confusion(int classes)
-    : classes_(classes), counts_(static_cast<size_t>(classes) * static_cast<size_t>(classes)) {}
-
-void Confusion::Add(int meant, int taken_for) {
-  ++counts_[static_cast<size_t>(meant * classes_ + taken_for)];
-}
-
-void Confusion::AddLikeliest(const std::vector<int>& meant,
-                             const std::vector<std::vector<float>>& probabilities) {
+std::vector<double> ClassAccuracies(const std::vector<int>& meant,
+                                    const std::vector<std::vector<float>>& probabilities,
+                                    int classes) {
+  std::vector<double> right(static_cast<size_t>(classes)), all(right.size());
   for (size_t i = 0; i < meant.size(); ++i) {
     const std::vector<float>& one = probabilities[i];
-    Add(meant[i], static_cast<int>(std::max_element(one.begin(), one.end()) - one.begin()));
+    const auto likeliest = std::max_element(one.begin(), one.end()) - one.begin();
+    if (likeliest == meant[i]) ++right[static_cast<size_t>(meant[i])];
+    ++all[static_cast<size_t>(meant[i])];
   }
+  for (size_t c = 0; c < right.size(); ++c) right[c] /= all[c];
+  return right;
 }
-
-int Confusion::count(int meant, int taken_for) const {
-  return counts_[static_cast<size_t>(meant * classes_ + taken_for)];
-}
-
-int Confusion::Total(int meant) const {
-  int total = 0;
-  for (int i = 0; i < classes_; ++i) total += count(meant, i);
-  return total;
-}
-
-double Confusion::ClassAccuracy(int meant) const {
-  return static_cast<double>(count(meant, meant)) / Total(meant);
-}
-
-std::vector<double> Confusion::ClassAccuracies() const {
-  std::vector<double> accuracies;
-  for (int c = 0; c < classes_; ++c) accuracies.push_back(ClassAccuracy(c));
-  return accuracies;
-}
-
-double Confusion::Accuracy() const {
-  int right = 0, total = 0;
-  for (int i = 0; i < classes_; ++i) {
-    right += count(i, i);
-    total += Total(i);
-  }
-  return static_cast<double>(right) / total;
-}
-
-double Confusion::MeanClassAccuracy() const { return base::Mean(ClassAccuracies()); }
 
 std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes) {
-  Confusion confusion(classes);
-  for (const JudgedFold& fold : folds) confusion.AddLikeliest(fold.classes, fold.probabilities);
-  return confusion.ClassAccuracies();
+  JudgedFold all;
+  for (const JudgedFold& fold : folds) {
+    all.classes.insert(all.classes.end(), fold.classes.begin(), fold.classes.end());
+    all.probabilities.insert(all.probabilities.end(), fold.probabilities.begin(),
+                             fold.probabilities.end());
+  }
+  return ClassAccuracies(all.classes, all.probabilities, classes);
 }
 
-absl::StatusOr<std::vector<double>> FrechetByClass(const std::vector<JudgedFold>& made,
-                                                   const std::vector<JudgedFold>& captured,
-                                                   int classes) {
+std::vector<double> FrechetByClass(const std::vector<JudgedFold>& made,
+                                   const std::vector<JudgedFold>& captured, int classes) {
   std::vector<double> distances;
   for (int c = 0; c < classes; ++c) {
-    const auto select = [c](const JudgedFold& fold) { return OfClass(fold, c); };
-    DUET_TRY(distances.emplace_back(), MeanFrechet(made, captured, select));
+    distances.push_back(
+        MeanFrechet(made, captured, [c](const JudgedFold& fold) { return OfClass(fold, c); }));
   }
   return distances;
 }
 
-absl::StatusOr<double> PooledFrechet(const std::vector<JudgedFold>& made,
-                                     const std::vector<JudgedFold>& captured) {
+double PooledFrechet(const std::vector<JudgedFold>& made, const std::vector<JudgedFold>& captured) {
   return MeanFrechet(made, captured, [](const JudgedFold& fold) { return fold.features; });
 }
 

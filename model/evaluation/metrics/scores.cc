@@ -76,15 +76,16 @@ double Afd(const motion::Poses& predicted, const motion::Poses& truth, MetricUni
   return sum / truth.frame_count();
 }
 
-double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit) {
+double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth) {
   double sum = 0;
-  for (int t = 0; t < truth.frame_count(); ++t) sum += FrameSquared(predicted[t], truth[t], unit);
+  for (int t = 0; t < truth.frame_count(); ++t) {
+    sum += FrameSquared(predicted[t], truth[t], MetricUnit::kSbuRaw);
+  }
   return sum / truth.frame_count();
 }
 
-double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root,
-                      MetricUnit unit) {
-  return Afd(WithoutRoot(predicted, root), WithoutRoot(truth, root), unit);
+double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root) {
+  return Afd(WithoutRoot(predicted, root), WithoutRoot(truth, root), MetricUnit::kSbuRaw);
 }
 
 std::map<std::string, double> ScoreMotion(const dataset::Dataset& dataset,
@@ -104,11 +105,9 @@ std::map<std::string, double> ScoreMotion(const dataset::Dataset& dataset,
       body::MeasurePenetration(leader, made, skeleton, dataset.parts);
   return {
       {"afd", Afd(made_raw, truth_raw, MetricUnit::kSbuRaw)},
-      {"afd_squared", AfdSquared(made_raw, truth_raw, MetricUnit::kSbuRaw)},
+      {"afd_squared", AfdSquared(made_raw, truth_raw)},
       {"afd_m", Afd(made, truth, MetricUnit::kMetres)},
-      {"afd_squared_m", AfdSquared(made, truth, MetricUnit::kMetres)},
-      {"root_aligned_afd", RootAlignedAfd(made_raw, truth_raw, skeleton.root, MetricUnit::kSbuRaw)},
-      {"root_aligned_afd_m", RootAlignedAfd(made, truth, skeleton.root, MetricUnit::kMetres)},
+      {"root_aligned_afd", RootAlignedAfd(made_raw, truth_raw, skeleton.root)},
       {"velocity_error", body::VelocityError(made, truth, rate)},
       {"bone_length_drift", body::BoneLengthDrift(made, skeleton)},
       {"jitter", body::Jitter(made, rate)},
@@ -118,7 +117,6 @@ std::map<std::string, double> ScoreMotion(const dataset::Dataset& dataset,
       {"penetration_depth_m", penetration.frequency > 0 ? penetration.mean_depth_metres : NAN},
       {"joint_speed", body::JointSpeed(calm, rate)},
       {"range_of_motion_m", body::RangeOfMotion(calm)},
-      {"filtered_jerk", body::Jitter(calm, rate)},
       {"lean_degrees", body::MeasureLean(made, skeleton, rate, body::LeanFrom::kHips).mean_degrees},
       {"facing_degrees", body::FacingDegrees(leader, made, skeleton)},
       {"root_distance_m", body::RootDistance(leader, made, skeleton)},

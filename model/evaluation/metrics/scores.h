@@ -33,13 +33,12 @@ enum class MetricUnit {
 // Source: paper, Eq. 6.
 double Afd(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit);
 
-// The same with the squared norm, as in the authors' released code. Unit: square of `unit`.
-double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit);
+// The same with the squared norm, as in the authors' released code. Square of the raw unit.
+double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth);
 
-// Afd after each follower's own root joint is subtracted in every frame: the pose without the
-// place.
-double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root,
-                      MetricUnit unit);
+// Afd in the raw unit after each follower's own root joint is subtracted in every frame: the pose
+// without the place.
+double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root);
 
 // A follower for a sequence of the data set, synthesised or captured.
 struct ScoredMotion {

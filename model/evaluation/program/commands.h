@@ -5,22 +5,37 @@
 #include <functional>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "model/evaluation/report/section.h"
 
 namespace duet::evaluation::program {
 
-// The commands of duet-eval. Each adds itself and its flags to `app` and, if the command line names
-// it, stores its action in `chosen`.
-using ChosenCommand = std::function<absl::Status()>;
+// What a command measures when its flags have been parsed: the text, tables, figures and settings
+// of a section.
+using Measure = std::function<absl::StatusOr<report::Section>()>;
 
-void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen);         // figures of methods by class
-void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen);       // many answers to one leader
-void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen);     // what a viewer notices
-void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen);     // from captured ones
-void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights
-void AddMixesCommand(CLI::App* app, ChosenCommand* chosen);         // mixes, negatives, reaction
-void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
-void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
-void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // tells whether classes differ
+// The commands of duet-eval. Each adds its flags to its command line.
+Measure AddFoldsCommand(CLI::App* command);
+Measure AddSamplesCommand(CLI::App* command);
+Measure AddPlausibleCommand(CLI::App* command);
+Measure AddToldApartCommand(CLI::App* command);
+Measure AddSweepCommand(CLI::App* command);
+Measure AddMixesCommand(CLI::App* command);
+Measure AddAugmentationCommand(CLI::App* command);
+Measure AddLatentCommand(CLI::App* command);
+
+// Adds all of them to `app`, each with --out, --id and --title. The one that a command line names
+// stores in `chosen` what measures, prints the section and, with --out, writes it.
+void AddCommands(CLI::App* app, std::function<absl::Status()>* chosen);
+
+// Type names of folders on a command line: a section records them instead of the folders.
+// "[NAME=]RUNS" keeps the name.
+inline constexpr char kFolder[] = "FOLDER";
+inline constexpr char kRuns[] = "[NAME=]RUNS";
+
+// The command line that was parsed: every flag that was given, in the order in which they are
+// declared.
+std::string RecordedCommand(const CLI::App& command);
 
 }  // namespace duet::evaluation::program
 

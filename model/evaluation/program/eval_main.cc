@@ -9,21 +9,13 @@
 #include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
-namespace program = duet::evaluation::program;
-
 namespace {
 
 int Run(int argc, char** argv) {
   CLI::App app("Measures trained models and baselines on captures.");
   app.set_version_flag("--version", "duet-eval " DUET_VERSION);
-  app.require_subcommand(1);
-  program::ChosenCommand chosen;
-  for (const auto add :
-       {program::AddFoldsCommand, program::AddSamplesCommand, program::AddPlausibleCommand,
-        program::AddToldApartCommand, program::AddSweepCommand, program::AddMixesCommand,
-        program::AddAugmentationCommand, program::AddLatentCommand, program::AddJudgeCommand}) {
-    add(&app, &chosen);
-  }
+  std::function<absl::Status()> chosen;
+  duet::evaluation::program::AddCommands(&app, &chosen);
   if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
   const absl::Status status = duet::network::CatchExceptions([&chosen] {
     absl::Status prepared = duet::torch_engine::SetTorchThreads(1);

@@ -1,61 +1,58 @@
 #include "model/evaluation/program/experiment.h"
 
-#include <algorithm>
+#include <chrono>
 #include <iostream>
+#include <iterator>
 #include <system_error>
 #include <utility>
-#include <vector>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
 #include "model/base/status_macros.h"
 #include "model/base/text.h"
+#include "model/engine/clip_synthesis.h"
+#include "model/engine/clips_together.h"
+#include "model/engine/live_clip.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-// A word as a shell reads it back.
-std::string ShellWord(const std::string& word) {
-  const bool is_plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-    return absl::ascii_isalnum(c) ||
-           (c != '\0' && std::string("_-+=,./:").find(c) != std::string::npos);
-  });
-  return is_plain ? word : absl::StrCat("'", absl::StrReplaceAll(word, {{"'", "'\\''"}}), "'");
+namespace fs = std::filesystem;
+
+// Bounds the memory of one evaluation; beyond it batches gain little.
+constexpr size_t kClipsTogether = 64;
+
+engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const LabelledLeader& labelled,
+                                const Asked& asked) {
+  const dataset::Sequence& sequence = *labelled.sequence;
+  const motion::Clip& leader = sequence.pair.leader;
+  const motion::Clip& follower = sequence.pair.follower;
+  const engine::Sampling sampling = {labelled.seed, asked.variety, asked.candidates,
+                                     asked.reaction};
+  engine::ClipRequest request{
+      leader.poses, leader.frame_rate_hz,       engine::LabelTrack(labelled.labels),
+      std::nullopt, sequence.partner_direction, {sampling, {}}};
+  if (asked.start == "none") return request;
+  request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};
+  if (asked.start == "pose") {
+    request.start->pose.assign(follower.poses[0].begin(), follower.poses[0].end());
+  }
+  return request;
 }
 
-// A value with a placeholder for its path.
-std::string Shown(const CLI::Option& option, const std::string& value) {
-  // Without the names of its checks, which follow after colons.
-  const std::string type = option.get_type_name().substr(0, option.get_type_name().find(':'));
-  const std::string folders[] = {kData, kRuns, kCheckpoint, kResults};
-  if (std::count(std::begin(folders), std::end(folders), type) > 0) return type;
-  if (type != kNamedRuns) return ShellWord(value);
-  const absl::StatusOr<NamedRuns> runs = ParseRuns(value);
-  return absl::StrCat(runs.ok() ? ShellWord(runs->name) : "NAME", "=", kRuns);
-}
-
-void AppendOptions(const CLI::App& app, std::string* line) {
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->count() == 0) continue;
-    const std::string name = absl::StrCat(" ", option->get_name());
-    std::vector<std::string> values;
-    for (const std::string& value : option->results()) values.push_back(Shown(*option, value));
-    if (option->get_expected_max() == 0) {
-      *line += name;  // a flag without a value
-    } else if (option->get_delimiter() != '\0') {
-      absl::StrAppend(line, name, " ", absl::StrJoin(values, ","));
-    } else {
-      for (const std::string& value : values) absl::StrAppend(line, name, " ", value);
-    }
+// Answers leaders together, as clips of either kind.
+template <typename Clip, typename... Delay>
+absl::StatusOr<std::vector<motion::Poses>> SynthesizeAs(const engine::Synthesizer& synthesizer,
+                                                        absl::Span<const LabelledLeader> leaders,
+                                                        const Asked& asked, Delay... delay) {
+  const engine::ModelDescription& model = synthesizer.description();
+  std::vector<Clip> clips;
+  for (const LabelledLeader& leader : leaders) {
+    clips.emplace_back(model, MakeRequest(model.skeleton, leader, asked), delay...);
   }
-  // Groups of options are subcommands without a name.
-  for (const CLI::App* group :
-       app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
-    AppendOptions(*group, line);
-  }
+  return engine::SynthesizeTogether(synthesizer, &clips);
 }
 
 }  // namespace
@@ -65,118 +62,61 @@ CLI::Option* AddNames(const char* name, std::vector<std::string>* values,
   return AddOption(name, values, help, command)->delimiter(',')->check(CLI::IsMember(among));
 }
 
-void AddDataFlag(std::string* data, CLI::App* command) {
-  command->add_option("--data", *data, "folder of captures (docs/datasets.md)")
-      ->type_name(kData)
-      ->required();
+CLI::Option* AddFolder(const char* name, std::string* folder, const char* help, CLI::App* command) {
+  return command->add_option(name, *folder, help)->type_name(kFolder);
 }
 
-void AddSectionFlags(SectionFlags* flags, CLI::App* command) {
-  flags->command = command;
+void AddExperimentFlags(ExperimentFlags* flags, CLI::App* command) {
+  AddFolder("--data", &flags->data, "folder of captures (docs/datasets.md)", command)->required();
   command
-      ->add_option("--out", flags->out,
-                   "folder for the results, which scripts/make_report.py reads")
-      ->type_name(kResults);
-  AddOption("--id", &flags->id, "id of the section", command);
-  AddOption("--title", &flags->title, "title of the section", command);
+      ->add_option("--subjects", flags->subjects,
+                   "subjects to leave out, one at a time (default: every subject)")
+      ->delimiter(',');
 }
 
-std::string RecordedCommand(const CLI::App& command) {
-  std::string line = absl::StrCat("duet-eval ", command.get_name());
-  AppendOptions(command, &line);
-  return line;
-}
-
-std::string DescribeData(const dataset::Dataset& dataset) {
-  return absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences");
-}
-
-report::ResultSection BeginSection(const SectionFlags& flags, const std::string& text) {
-  report::ResultSection section;
-  section.id = flags.id;
-  section.title = flags.title;
-  section.text = {text};
-  section.command = RecordedCommand(*flags.command);
-  section.date = report::Today();
-  return section;
-}
-
-absl::Status FinishSection(const SectionFlags& flags, const report::ResultSection& section) {
-  for (const report::Table& table : section.tables) std::cout << ToPlainText(table) << "\n";
-  return flags.out.empty() ? absl::OkStatus() : WriteSection(section, flags.out);
-}
-
-void AddModelFlags(ModelNeeded needed, ModelChoice* models, CLI::App* command) {
-  auto* source = command->add_option_group("model", "models to measure");
-  source->add_option("--runs", models->runs, "output of duet-train --protocol loso; repeatable")
-      ->type_name(kNamedRuns)
-      ->allow_extra_args(false);
-  source->add_option("--checkpoint", models->checkpoint, "one checkpoint folder for every fold")
-      ->type_name(kCheckpoint);
-  source->add_flag("--embedded", models->embedded, "the embedded checkpoint");
-  source->require_option(needed == ModelNeeded::kYes ? 1 : 0, 1);
-  AddAsServedFlag(models, command);
-}
-
-void AddAsServedFlag(ModelChoice* models, CLI::App* command) {
-  command->add_flag("--as-served", models->as_served,
+void AddModelFlags(ExperimentFlags* flags, CLI::App* command) {
+  CLI::Option* runs =
+      command->add_option("--runs", flags->runs, "output of duet-train --protocol loso; repeatable")
+          ->type_name(kRuns)
+          ->allow_extra_args(false);
+  CLI::Option* checkpoint = AddFolder("--checkpoint", &flags->checkpoint,
+                                      "one checkpoint folder for every fold", command);
+  CLI::Option* embedded =
+      command->add_flag("--embedded", flags->embedded, "the embedded checkpoint");
+  runs->excludes(checkpoint, embedded);
+  checkpoint->excludes(embedded);
+  command->add_flag("--as-served", flags->as_served,
                     "finish the answers as a server does (default: the network's own answers)");
 }
 
-std::vector<std::string> StartNames() { return {"none", "root", "pose"}; }
-
-experiments::StartGiven ParseStart(const std::string& name) {
-  if (name == "root") return experiments::StartGiven::kRoot;
-  return name == "pose" ? experiments::StartGiven::kPose : experiments::StartGiven::kNone;
-}
-
-std::string StartSuffix(experiments::StartGiven start) {
-  if (start == experiments::StartGiven::kNone) return "";
-  return start == experiments::StartGiven::kRoot ? "+root" : "+pose";
-}
-
-void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command) {
-  AddNames("--starts", starts, StartNames(),
+void AddStartsFlag(ExperimentFlags* flags, CLI::App* command) {
+  AddNames("--starts", &flags->starts, {"none", "root", "pose"},
            "input about the follower's first frame; one row per value", command);
 }
 
-void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
-  AddNumber("--variety", &asked->variety, 0.0, 2.0, kVarietyHelp, command);
+void AddSamplingFlags(Asked* asked, CLI::App* command) {
+  AddNumber("--samples", &asked->samples, 1, 1000, "answers to each leader by a model that samples",
+            command);
+  AddNumber("--variety", &asked->variety, 0.0, 2.0,
+            "variety of sampled answers; 0: the typical answer, 1: as varied as people", command);
   AddNumber("--candidates", &asked->candidates, 1, engine::kMostCandidates,
             "samples of each window, of which the best is taken", command);
   AddNumber("--reaction", &asked->reaction, 0.0, double{engine::kMostReaction},
             "factor of what the leader's motion changes in an answer", command);
   AddOption("--seed", &asked->seed, "seed of the answers", command);
   command
-      ->add_option(
-          "--live", asked->live_delay,
-          "answer as in a live session, this number of leader frames later; without it, the "
-          "whole leader is known")
-      ->type_name("FRAMES")
+      ->add_option("--live", asked->live_delay,
+                   "answer as in a live session, this number of leader frames later; without it, "
+                   "the whole leader is known")
       ->check(CLI::Range(0, 10));
 }
 
-void AddSamplingSettings(const experiments::AskedSamples& asked, report::ResultSection* section) {
-  section->settings.insert(
-      section->settings.end(),
-      {{"variety", absl::StrCat(asked.variety)},
-       {"candidates", absl::StrCat(asked.candidates)},
-       {"seed", absl::StrCat(asked.seed)},
-       {"live", asked.live_delay ? absl::StrCat(*asked.live_delay, " frames of delay") : "no"}});
+void AddAnswersFlags(ExperimentFlags* flags, CLI::App* command) {
+  AddExperimentFlags(flags, command);
+  AddModelFlags(flags, command);
+  AddStartsFlag(flags, command);
+  AddSamplingFlags(&flags->asked, command);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-absl::StatusOr<SharedSynthesizer> LoadOne(const ModelChoice& choice) {
-  const engine::PipelineOptions options{choice.as_served, choice.as_served, choice.as_served};
-  if (!choice.embedded) return torch_engine::LoadTorchSynthesizer(choice.checkpoint, options);
-  DUET_TRY(auto all, torch_engine::LoadEmbeddedSynthesizers(options));
-  return SharedSynthesizer(std::move(all.front()));
-}
-
-}  // namespace
 
 absl::StatusOr<NamedRuns> ParseRuns(const std::string& text) {
   const size_t equals = text.find('=');
@@ -208,46 +148,29 @@ absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const fs::path& run) {
                                           found.size(), " checkpoints"));
 }
 
-absl::StatusOr<SharedSynthesizer> LoadFoldModel(const fs::path& runs, const std::string& subject,
-                                                bool as_served) {
-  DUET_TRY(checkpoint::Checkpoint checkpoint, ReadRunCheckpoint(runs / subject));
-  return torch_engine::MakeTorchSynthesizer(checkpoint, {as_served, as_served, as_served});
-}
-
-absl::StatusOr<std::vector<FoldModel>> OpenModels(const ModelChoice& choice) {
+absl::StatusOr<std::vector<FoldModel>> OpenModels(const ExperimentFlags& flags) {
+  const engine::PipelineOptions options{flags.as_served, flags.as_served, flags.as_served};
   std::vector<FoldModel> models;
-  if (choice.one_for_all()) {
-    DUET_TRY(SharedSynthesizer one, LoadOne(choice));
+  if (flags.embedded || !flags.checkpoint.empty()) {
+    SharedSynthesizer one;
+    if (flags.embedded) {
+      DUET_TRY(auto all, torch_engine::LoadEmbeddedSynthesizers(options));
+      one = std::move(all.front());
+    } else {
+      DUET_TRY(one, torch_engine::LoadTorchSynthesizer(flags.checkpoint, options));
+    }
     models.push_back({"duet", [one](const std::string&) { return one; }});
   }
-  for (const std::string& text : choice.runs) {
+  for (const std::string& text : flags.runs) {
     DUET_TRY(NamedRuns runs, ParseRuns(text));
-    models.push_back(
-        {runs.name, [runs = runs, as_served = choice.as_served](const std::string& subject) {
-           return LoadFoldModel(runs.folder, subject, as_served);
-         }});
+    models.push_back({runs.name,
+                      [folder = runs.folder,
+                       options](const std::string& subject) -> absl::StatusOr<SharedSynthesizer> {
+                        DUET_TRY(const auto checkpoint, ReadRunCheckpoint(folder / subject));
+                        return torch_engine::MakeTorchSynthesizer(checkpoint, options);
+                      }});
   }
   return models;
-}
-
-void AddExperimentFlags(const std::string& id, const std::string& title, ExperimentFlags* flags,
-                        CLI::App* command) {
-  flags->section.id = id;
-  flags->section.title = title;
-  AddDataFlag(&flags->data, command);
-  command
-      ->add_option("--subjects", flags->subjects,
-                   "subjects to leave out, one at a time (default: every subject)")
-      ->delimiter(',');
-  AddSectionFlags(&flags->section, command);
-}
-
-void AddAnswersFlags(const std::string& id, const std::string& title, ExperimentFlags* flags,
-                     CLI::App* command) {
-  AddExperimentFlags(id, title, flags, command);
-  AddModelFlags(ModelNeeded::kYes, &flags->models, command);
-  AddStartsFlag(&flags->starts, command);
-  AddSamplingFlags(&flags->asked, command);
 }
 
 absl::StatusOr<std::vector<Fold>> LeaveOut(const dataset::Dataset& dataset,
@@ -264,40 +187,155 @@ absl::StatusOr<std::vector<Fold>> LeaveOut(const dataset::Dataset& dataset,
 absl::StatusOr<Experiment> OpenExperiment(const ExperimentFlags& flags) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(flags.data));
   DUET_TRY(std::vector<Fold> folds, LeaveOut(dataset, flags.subjects));
-  DUET_TRY(std::vector<FoldModel> models, OpenModels(flags.models));
+  DUET_TRY(std::vector<FoldModel> models, OpenModels(flags));
   return Experiment{std::move(dataset), std::move(folds), std::move(models)};
 }
 
-absl::StatusOr<metrics::SampledMotions> Answers(const dataset::Dataset& dataset,
-                                                const FoldModel& model, const Fold& fold,
-                                                const std::vector<int>& sequences,
-                                                const std::string& start,
-                                                const experiments::AskedSamples& asked) {
-  DUET_TRY(SharedSynthesizer synthesizer, model.load(fold.subject));
-  return AnswerWithSamples(*synthesizer, dataset, sequences, ParseStart(start), asked);
+std::string DescribeData(const dataset::Dataset& dataset) {
+  return absl::StrCat(dataset.name, ", ", dataset.sequences.size(), " sequences");
 }
 
-report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
-                                      const std::string& text) {
-  report::ResultSection section = BeginSection(flags.section, text);
-  if (flags.models.one_for_all()) {
+report::Section BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
+                                const std::string& text) {
+  report::Section section;
+  section.text = {text};
+  if (flags.embedded || !flags.checkpoint.empty()) {
     section.text.push_back(
         "One checkpoint for every fold: it may have been trained on what is tested.");
   }
   std::vector<std::string> subjects;
   for (const Fold& fold : experiment.folds) subjects.push_back(fold.subject);
-  section.settings = {
-      {"data", DescribeData(experiment.dataset)},
-      {"left out in turn", absl::StrJoin(subjects, ", ")},
-      {"models' answers", flags.models.as_served ? "as served" : "the network's own"}};
+  section.settings = {{"data", DescribeData(experiment.dataset)},
+                      {"left out in turn", absl::StrJoin(subjects, ", ")},
+                      {"models' answers", flags.as_served ? "as served" : "the network's own"}};
   return section;
 }
 
-report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experiment& experiment,
-                                   const std::string& text) {
-  report::ResultSection section = BeginExperiment(flags, experiment, text);
-  AddSamplingSettings(flags.asked, &section);
-  return section;
+std::string StartSuffix(const std::string& start) {
+  return start == "none" ? "" : absl::StrCat("+", start);
+}
+
+absl::Status CheckModelTakes(const engine::ModelDescription& model, const dataset::Dataset& dataset,
+                             const std::string& start) {
+  if (model.classes != dataset.classes) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", model.name, ": its classes are ", absl::StrJoin(model.classes, ", "),
+                     ", the data's ", absl::StrJoin(dataset.classes, ", ")));
+  }
+  if (model.skeleton.joint_names != dataset.skeleton.joint_names) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", model.name, ": its joints are not the data's"));
+  }
+  if (start != "none" && !model.accepts_follower_start) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", model.name, ": does not accept a follower start"));
+  }
+  return absl::OkStatus();
+}
+
+std::vector<float> OneClass(int classes, int interaction_class) {
+  std::vector<float> weights(static_cast<size_t>(classes));
+  weights[static_cast<size_t>(interaction_class)] = 1;
+  return weights;
+}
+
+absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(
+    const engine::Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders,
+    const Asked& asked) {
+  if (asked.live_delay && !engine::AnswersLive(synthesizer.description())) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", synthesizer.description().name, ": does not answer live"));
+  }
+  std::vector<motion::Poses> followers;
+  for (size_t first = 0; first < leaders.size(); first += kClipsTogether) {
+    const auto some = leaders.subspan(first, kClipsTogether);
+    DUET_TRY(std::vector<motion::Poses> more,
+             asked.live_delay
+                 ? SynthesizeAs<engine::LiveClip>(synthesizer, some, asked, *asked.live_delay)
+                 : SynthesizeAs<engine::ClipSynthesis>(synthesizer, some, asked));
+    std::move(more.begin(), more.end(), std::back_inserter(followers));
+  }
+  return followers;
+}
+
+uint64_t SeedOf(const Asked& asked, const dataset::Dataset& dataset, int sequence, int n) {
+  const uint64_t set = asked.seed + static_cast<uint64_t>(n);
+  return set * dataset.sequences.size() + static_cast<uint64_t>(sequence);
+}
+
+absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesizer& synthesizer,
+                                                          const dataset::Dataset& dataset,
+                                                          const std::vector<int>& sequences,
+                                                          const Asked& asked) {
+  DUET_RETURN_IF_ERROR(CheckModelTakes(synthesizer.description(), dataset, asked.start));
+  const int samples = synthesizer.description().samples ? asked.samples : 1;
+  std::vector<LabelledLeader> leaders;
+  for (int n = 0; n < samples; ++n) {
+    for (const int index : sequences) {
+      const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+      leaders.push_back({&sequence, OneClass(dataset.class_count(), sequence.interaction_class),
+                         SeedOf(asked, dataset, index, n)});
+    }
+  }
+  DUET_TRY(auto followers, SynthesizeSequences(synthesizer, leaders, asked));
+  metrics::SampledMotions answers(static_cast<size_t>(samples));
+  auto follower = followers.begin();
+  for (std::vector<metrics::ScoredMotion>& set : answers) {
+    for (const int index : sequences) set.push_back({index, std::move(*follower++)});
+  }
+  return answers;
+}
+
+absl::StatusOr<std::vector<judge::MotionClassifier>> TrainJudges(const dataset::Dataset& dataset,
+                                                                 const std::vector<Fold>& folds) {
+  judge::MotionClassifierOptions options;
+  // The results of one network for an unseen person depend on its seed: several are averaged.
+  options.members = 4;
+  std::vector<judge::MotionClassifier> judges;
+  for (const Fold& fold : folds) {
+    const auto start = std::chrono::steady_clock::now();
+    DUET_TRY(judge::MotionClassifier judge,
+             judge::MotionClassifier::Train(
+                 dataset, metrics::CapturedMotions(dataset, fold.split.train), options));
+    judges.push_back(std::move(judge));
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    std::cerr << absl::StrFormat("judge without %s: %d motions, %.1f s\n", fold.subject,
+                                 fold.split.train.size(), passed.count());
+  }
+  return judges;
+}
+
+FoldAnswers CapturedAnswers(const Experiment& experiment) {
+  FoldAnswers captured;
+  for (const Fold& fold : experiment.folds) {
+    captured.push_back(metrics::CapturedMotions(experiment.dataset, fold.split.test));
+  }
+  return captured;
+}
+
+std::vector<metrics::JudgedFold> JudgeFolds(const std::vector<judge::MotionClassifier>& judges,
+                                            const dataset::Dataset& dataset,
+                                            const FoldAnswers& answers) {
+  std::vector<metrics::JudgedFold> judged;
+  for (size_t i = 0; i < judges.size(); ++i) {
+    judged.push_back(judges[i].Judge(dataset, answers[i]));
+  }
+  return judged;
+}
+
+absl::StatusOr<std::vector<FoldAnswers>> AnswerFolds(const Experiment& experiment,
+                                                     const FoldModel& model, const Asked& asked) {
+  std::vector<FoldAnswers> sets;
+  for (const Fold& fold : experiment.folds) {
+    DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
+    DUET_TRY(metrics::SampledMotions of_fold,
+             AnswerWithSamples(*synthesizer, experiment.dataset, fold.split.test, asked));
+    sets.resize(of_fold.size());
+    for (size_t n = 0; n < sets.size(); ++n) sets[n].push_back(std::move(of_fold[n]));
+    std::cerr << absl::StrCat(model.name, StartSuffix(asked.start), " without ", fold.subject, ": ",
+                              fold.split.test.size(), " leaders, ", sets.size(), " answers each\n");
+  }
+  return sets;
 }
 
 }  // namespace duet::evaluation::program

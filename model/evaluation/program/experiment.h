@@ -6,40 +6,26 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "model/base/program_flags.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/dataset/dataset.h"
+#include "model/engine/label_track.h"
 #include "model/engine/synthesizer.h"
-#include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/judge/motion_classifier.h"
+#include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/metrics/scores.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/report/result_section.h"
 
-// What commands share: their flags, how a section begins and ends, the models that a command line
-// names, the runs of duet-train that they come from, and people left out of their training, on whom
-// they are measured.
+// What commands share: their flags, the models that a command line names, people left out of
+// training, on whom models are measured, and the answers of models to captured leaders.
 
 namespace duet::evaluation::program {
-
-// Folders on a command line. The type name is the placeholder that a recorded command shows instead
-// of the path; "[NAME=]RUNS" keeps the name.
-inline constexpr char kData[] = "DIR";
-inline constexpr char kRuns[] = "RUNS";
-inline constexpr char kNamedRuns[] = "[NAME=]RUNS";
-inline constexpr char kCheckpoint[] = "CHECKPOINT";
-inline constexpr char kResults[] = "RESULTS";
-
-struct SectionFlags {
-  std::string id, title;              // set before the flags are added: they are the defaults
-  std::string out{};                  // empty: only print the tables
-  const CLI::App* command = nullptr;  // outlives the flags
-};
 
 // An option whose default --help shows.
 template <typename Value>
@@ -55,90 +41,48 @@ CLI::Option* AddNumber(const char* name, Value* value, Number least, Number most
 // The same for values of `among`, separated by commas.
 CLI::Option* AddNames(const char* name, std::vector<std::string>* values,
                       const std::vector<std::string>& among, const char* help, CLI::App* command);
+// A folder; the option is required unless there is a default.
+CLI::Option* AddFolder(const char* name, std::string* folder, const char* help, CLI::App* command);
 
-// --data, required
-void AddDataFlag(std::string* data, CLI::App* command);
-// --out, --id, --title
-void AddSectionFlags(SectionFlags* flags, CLI::App* command);
+// What a request to a model has beside leader, labels and seed.
+struct Asked {
+  std::string start = "none";  // what it tells of the follower's first frame, or "root" or "pose"
+  int samples = 1;             // answers to each leader; a model that does not sample gives one
+  float variety = 1;
+  uint64_t seed = 0;  // of a whole set of answers
+  int candidates = engine::kDefaultCandidates;
+  float reaction = 1;  // engine::Sampling::reaction
+  // Answered live, with so many frames of delay. Absent: with the whole leader known.
+  std::optional<int> live_delay = std::nullopt;
+};
 
-// A command of `app`, which runs when the command line names it, and its arguments.
-template <typename Arguments>
-std::pair<Arguments*, CLI::App*> AddCommand(const char* name, const char* help,
-                                            absl::Status (*run)(const Arguments&), CLI::App* app,
-                                            ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand(name, help);
-  command->callback(
-      [arguments, run, chosen] { *chosen = [arguments, run] { return run(*arguments); }; });
-  return {arguments.get(), command};
-}
+// The flags that commands may have. What a command sets before it adds them are the defaults.
+struct ExperimentFlags {
+  std::string data;
+  std::vector<std::string> subjects;
 
-// The command line that was parsed, with placeholders for the folders: every flag that was given,
-// in the order in which they are declared.
-std::string RecordedCommand(const CLI::App& command);
-
-// "sbu, 282 sequences", for a section's settings.
-std::string DescribeData(const dataset::Dataset& dataset);
-
-// A section with its id, title, first paragraph, command and date.
-report::ResultSection BeginSection(const SectionFlags& flags, const std::string& text);
-
-// Prints the tables, and writes the section if --out is given.
-absl::Status FinishSection(const SectionFlags& flags, const report::ResultSection& section);
-
-// The models of a command line.
-struct ModelChoice {
+  // Models: exactly one kind.
   std::vector<std::string> runs;  // [NAME=]RUNS each, a model per fold
   std::string checkpoint;         // one model for every fold
   bool embedded = false;          // likewise, the one inside the program
   bool as_served = false;         // finished as a server finishes them (engine::PipelineOptions)
 
-  bool one_for_all() const { return embedded || !checkpoint.empty(); }
+  std::vector<std::string> starts = {"none", "pose"};  // a row of each model for each
+  Asked asked;
 };
 
-// --runs, --checkpoint, --embedded, --as-served. Exactly one source of models, or at most one.
-enum class ModelNeeded { kYes, kNo };
-void AddModelFlags(ModelNeeded needed, ModelChoice* models, CLI::App* command);
-
-// --as-served
-void AddAsServedFlag(ModelChoice* models, CLI::App* command);
-
-// Values of --starts: "none", "root" and "pose". ParseStart requires one of them.
-std::vector<std::string> StartNames();
-experiments::StartGiven ParseStart(const std::string& name);
-// The suffix of a row's name: "", "+root", "+pose".
-std::string StartSuffix(experiments::StartGiven start);
-
+// --data, --subjects
+void AddExperimentFlags(ExperimentFlags* flags, CLI::App* command);
+// --runs, --checkpoint, --embedded, --as-served
+void AddModelFlags(ExperimentFlags* flags, CLI::App* command);
 // --starts
-void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
-
-inline constexpr char kVarietyHelp[] =
-    "variety of sampled answers; 0: the typical answer, 1: as varied as people";
-// --variety, --candidates, --reaction, --seed, --live
-void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
-
-// The values of AddSamplingFlags as settings of a section.
-void AddSamplingSettings(const experiments::AskedSamples& asked, report::ResultSection* section);
+void AddStartsFlag(ExperimentFlags* flags, CLI::App* command);
+// --samples, --variety, --candidates, --reaction, --seed, --live
+void AddSamplingFlags(Asked* asked, CLI::App* command);
+// All of them.
+void AddAnswersFlags(ExperimentFlags* flags, CLI::App* command);
 
 using SharedSynthesizer = std::shared_ptr<const engine::Synthesizer>;
-
-// Runs of duet-train, and their name in tables.
-struct NamedRuns {
-  std::string name;
-  std::filesystem::path folder;
-};
-
-// Parses "ours=DIR", or "DIR", which is named by its last part. Errors: INVALID_ARGUMENT.
-absl::StatusOr<NamedRuns> ParseRuns(const std::string& text);
-
-// The only checkpoint below a run's folder, <run>/checkpoint/<name>/<version>. Errors: NOT_FOUND.
-absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const std::filesystem::path& run);
-
-// The generator of a fold: of <runs>/<subject>, as written by duet-train --protocol loso.
-// `as_served`: with constant limb lengths on the leader's floor, as a server answers; otherwise the
-// network's own answer.
-absl::StatusOr<SharedSynthesizer> LoadFoldModel(const std::filesystem::path& runs,
-                                                const std::string& subject, bool as_served);
 
 // A model by its name in the tables, and its generator for the fold without a subject.
 struct FoldModel {
@@ -146,25 +90,20 @@ struct FoldModel {
   std::function<absl::StatusOr<SharedSynthesizer>(const std::string& subject)> load;
 };
 
-// Errors: INVALID_ARGUMENT for runs without a name; those of reading a checkpoint.
-absl::StatusOr<std::vector<FoldModel>> OpenModels(const ModelChoice& choice);
-
-struct ExperimentFlags {
-  std::string data;
-  ModelChoice models;
-  std::vector<std::string> subjects;
-  SectionFlags section;
-  // Set before the flags are added: they are the defaults.
-  std::vector<std::string> starts = {"none", "pose"};
-  experiments::AskedSamples asked;
+// Runs of duet-train and their name in tables: "ours=DIR", or "DIR", which is named by its last
+// part. Errors: INVALID_ARGUMENT.
+struct NamedRuns {
+  std::string name;
+  std::filesystem::path folder;
 };
+absl::StatusOr<NamedRuns> ParseRuns(const std::string& text);
 
-// --data, --subjects and those of the section.
-void AddExperimentFlags(const std::string& id, const std::string& title, ExperimentFlags* flags,
-                        CLI::App* command);
-// The same, and those of the models, their starts and their sampling.
-void AddAnswersFlags(const std::string& id, const std::string& title, ExperimentFlags* flags,
-                     CLI::App* command);
+// The only checkpoint below a run's folder, <run>/checkpoint/<name>/<version>. Errors: NOT_FOUND.
+absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const std::filesystem::path& run);
+
+// The models that flags name; a fold's is of <runs>/<subject>, as written by duet-train --protocol
+// loso. Errors: INVALID_ARGUMENT for runs without a name; those of reading a checkpoint.
+absl::StatusOr<std::vector<FoldModel>> OpenModels(const ExperimentFlags& flags);
 
 // One subject left out of training.
 struct Fold {
@@ -187,21 +126,66 @@ struct Experiment {
 // Errors: those of ReadDataset, LeaveOut and OpenModels.
 absl::StatusOr<Experiment> OpenExperiment(const ExperimentFlags& flags);
 
-// The answers of a fold's model to sequences of the data set. Errors: those of loading the model
-// and of AnswerWithSamples.
-absl::StatusOr<metrics::SampledMotions> Answers(const dataset::Dataset& dataset,
-                                                const FoldModel& model, const Fold& fold,
-                                                const std::vector<int>& sequences,
-                                                const std::string& start,
-                                                const experiments::AskedSamples& asked);
+// "sbu, 282 sequences", for a section's settings.
+std::string DescribeData(const dataset::Dataset& dataset);
 
-// BeginSection with the settings of every experiment: the data, the subjects left out, and how the
-// models' answers are finished.
-report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
-                                      const std::string& text);
-// The same with the sampling of the answers, for commands of AddAnswersFlags.
-report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experiment& experiment,
-                                   const std::string& text);
+// A section with this paragraph and the settings of every experiment: the data, the subjects left
+// out, and how the models' answers are finished.
+report::Section BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
+                                const std::string& text);
+
+// The suffix of a row's name: "", "+root", "+pose".
+std::string StartSuffix(const std::string& start);
+
+// FAILED_PRECONDITION if a model's classes or joints differ from the data's, or if it does not
+// accept the start.
+absl::Status CheckModelTakes(const engine::ModelDescription& model, const dataset::Dataset& dataset,
+                             const std::string& start);
+
+// The label vector of one class at weight 1. Shapes: returns [classes].
+std::vector<float> OneClass(int classes, int interaction_class);
+
+// A leader, and the labels and the seed to answer it with.
+struct LabelledLeader {
+  const dataset::Sequence* sequence;
+  std::vector<float> labels;
+  uint64_t seed = 0;
+};
+
+// The followers of many leaders, as a server makes them, with several windows per evaluation of the
+// network: much faster than one by one. Returns a follower for each, in order; fails if one fails.
+absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(
+    const engine::Synthesizer& synthesizer, absl::Span<const LabelledLeader> leaders,
+    const Asked& asked);
+
+// The seed of the n-th answer to a sequence. No two leaders share a seed: with common noise, their
+// answers would vary less than in use.
+uint64_t SeedOf(const Asked& asked, const dataset::Dataset& dataset, int sequence, int n);
+
+// The answers to sequences of the data set, each in its own class at weight 1. Errors: those of
+// CheckModelTakes and of the network. Shapes: returns [samples][sequences].
+absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesizer& synthesizer,
+                                                          const dataset::Dataset& dataset,
+                                                          const std::vector<int>& sequences,
+                                                          const Asked& asked);
+
+// Trains the judge of each fold, only on the captured followers of the fold's training sequences.
+// Prints the time to stderr. Errors: MotionClassifier::Train's.
+absl::StatusOr<std::vector<judge::MotionClassifier>> TrainJudges(const dataset::Dataset& dataset,
+                                                                 const std::vector<Fold>& folds);
+
+// One answer to each test leader of each fold. Shapes: [folds][test].
+using FoldAnswers = std::vector<std::vector<metrics::ScoredMotion>>;
+// A model's answers, each in the class of its sequence at weight 1. Writes progress to stderr.
+// Errors: those of loading the model and of AnswerWithSamples. Shapes: returns [samples].
+absl::StatusOr<std::vector<FoldAnswers>> AnswerFolds(const Experiment& experiment,
+                                                     const FoldModel& model, const Asked& asked);
+// The captured followers.
+FoldAnswers CapturedAnswers(const Experiment& experiment);
+// The results of each fold's judge. Shapes: judges and answers [folds].
+std::vector<metrics::JudgedFold> JudgeFolds(const std::vector<judge::MotionClassifier>& judges,
+                                            const dataset::Dataset& dataset,
+                                            const FoldAnswers& answers);
 
 }  // namespace duet::evaluation::program
 

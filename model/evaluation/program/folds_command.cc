@@ -2,15 +2,11 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
 #include "model/evaluation/baselines/baselines.h"
-#include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/fold_scorer.h"
 #include "model/evaluation/report/metric_tables.h"
 
 namespace duet::evaluation::program {
@@ -19,140 +15,125 @@ namespace {
 // Value of --baselines for only the models' rows.
 constexpr char kNoBaseline[] = "none";
 
-struct FoldsArguments : ExperimentFlags {
+struct FoldsFlags : ExperimentFlags {
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
   std::vector<std::string> metrics = {"afd", "afd_squared"};
-  std::vector<std::string> printed;
+  bool printed = false;
 };
-
-// Scores one answer to each leader of every fold. `answer` returns those of a fold.
-template <typename Answer>
-absl::StatusOr<report::MethodFigures> Score(const FoldScorer& scorer, const std::string& row,
-                                            const Answer& answer) {
-  OneAnswerEach answers;
-  for (const Fold& fold : scorer.folds()) {
-    DUET_TRY(answers.emplace_back(), answer(fold));
-    std::cerr << absl::StrCat(row, " without ", fold.subject, ": ", answers.back().size(),
-                              " leaders\n");
-  }
-  return scorer.Score(row, answers);
-}
-
-using Motions = absl::StatusOr<std::vector<metrics::ScoredMotion>>;
-
-absl::StatusOr<report::MethodFigures> ScoreBaseline(const dataset::Dataset& dataset,
-                                                    const FoldScorer& scorer,
-                                                    const std::string& name) {
-  return Score(scorer, name, [&](const Fold& fold) -> Motions {
-    DUET_TRY(const std::unique_ptr<baselines::Method> method, baselines::MakeBaseline(name));
-    return RunFold(dataset, fold.split, method.get());
-  });
-}
-
-absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset,
-                                                 const FoldScorer& scorer, const FoldModel& model,
-                                                 const std::string& start) {
-  experiments::AskedSamples once;
-  once.samples = 1;
-  return Score(scorer, model.name + StartSuffix(ParseStart(start)),
-               [&](const Fold& fold) -> Motions {
-                 DUET_TRY(metrics::SampledMotions answers,
-                          Answers(dataset, model, fold, fold.split.test, start, once));
-                 return std::move(answers.front());
-               });
-}
-
-absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experiment,
-                                                        const FoldScorer& scorer,
-                                                        const FoldsArguments& arguments) {
-  std::vector<report::MethodFigures> rows;
-  for (const std::string& name : arguments.baselines) {
-    if (name == kNoBaseline) continue;
-    DUET_TRY(rows.emplace_back(), ScoreBaseline(experiment.dataset, scorer, name));
-  }
-  for (const FoldModel& model : experiment.models) {
-    for (const std::string& name : arguments.starts) {
-      auto row = ScoreModel(experiment.dataset, scorer, model, name);
-      // A model without a start input has only one row.
-      if (absl::IsFailedPrecondition(row.status()) && name != StartNames().front()) {
-        std::cerr << model.name << " with " << name << ": left out: " << row.status().message()
-                  << "\n";
-        continue;
-      }
-      DUET_TRY(rows.emplace_back(), std::move(row));
-    }
-  }
-  DUET_TRY(rows.emplace_back(), scorer.ScoreCaptured());
-  return rows;
-}
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::vector<report::Table> Tables(const dataset::Dataset& dataset, const FoldsArguments& arguments,
-                                  const std::vector<report::MethodFigures>& rows) {
-  std::vector<report::Table> tables;
-  for (const report::MetricStyle& style : report::MetricStyles()) {
-    if (!Contains(arguments.metrics, style.name)) continue;
-    tables.push_back(MetricTable(style, dataset.classes, rows));
-    const bool frame_distance = style.name == "afd" || style.name == "afd_squared";
-    if (frame_distance && Contains(arguments.printed, "afd")) {
-      AddPrintedRows(report::PaperAfdSbu(), &tables.back());
+// Scores one answer to each leader of every fold: every row in the same folds with the same judges.
+class Scorer {
+ public:
+  static absl::StatusOr<Scorer> Create(const Experiment& experiment, bool judges) {
+    Scorer scorer(experiment);
+    if (judges) {
+      DUET_TRY(scorer.judges_, TrainJudges(experiment.dataset, experiment.folds));
     }
-    if (style.name == report::kFrechet && Contains(arguments.printed, "fid")) {
-      AddPrintedRows(report::PaperFidSbu(), &tables.back());
+    scorer.judged_captured_ =
+        JudgeFolds(scorer.judges_, experiment.dataset, CapturedAnswers(experiment));
+    return scorer;
+  }
+
+  report::MethodFigures Score(const std::string& row, const FoldAnswers& answers) const {
+    const dataset::Dataset& dataset = experiment_->dataset;
+    const int classes = dataset.class_count();
+    report::MethodFigures figures{row, /*captured=*/false, ScoreByClass(dataset, Pool(answers))};
+    if (judges_.empty()) return figures;
+    const std::vector<metrics::JudgedFold> made = JudgeFolds(judges_, dataset, answers);
+    figures.by_metric[report::kFrechet] = FrechetByClass(made, judged_captured_, classes);
+    figures.by_metric[report::kAccuracy] = AccuracyByClass(made, classes);
+    figures.by_metric[report::kDiversity] = DiversityByClass(made, classes);
+    return figures;
+  }
+
+ private:
+  explicit Scorer(const Experiment& experiment) : experiment_(&experiment) {}
+
+  const Experiment* experiment_;
+  std::vector<judge::MotionClassifier> judges_;  // [folds], or empty
+  std::vector<metrics::JudgedFold> judged_captured_;
+};
+
+absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experiment,
+                                                        const FoldsFlags& flags) {
+  const auto& styles = report::MetricStyles();
+  const bool judged = std::any_of(styles.begin(), styles.end(), [&](const auto& style) {
+    return style.judged && Contains(flags.metrics, style.name);
+  });
+  DUET_TRY(const Scorer scorer, Scorer::Create(experiment, judged));
+  std::vector<report::MethodFigures> rows;
+  for (const std::string& name : flags.baselines) {
+    if (name == kNoBaseline) continue;
+    FoldAnswers answers;
+    for (const Fold& fold : experiment.folds) {
+      DUET_TRY(answers.emplace_back(),
+               baselines::RunBaseline(name, experiment.dataset, fold.split));
+    }
+    rows.push_back(scorer.Score(name, answers));
+  }
+  for (const FoldModel& model : experiment.models) {
+    for (const std::string& start : flags.starts) {
+      Asked once;
+      once.start = start;
+      const auto answers = AnswerFolds(experiment, model, once);
+      // A model without a start input has only one row.
+      if (absl::IsFailedPrecondition(answers.status()) && start != "none") {
+        std::cerr << model.name << " with " << start << ": left out: " << answers.status().message()
+                  << "\n";
+        continue;
+      }
+      DUET_RETURN_IF_ERROR(answers.status());
+      rows.push_back(scorer.Score(model.name + StartSuffix(start), answers->front()));
     }
   }
-  return tables;
+  rows.push_back(scorer.Score("captured", CapturedAnswers(experiment)));
+  rows.back().captured = true;
+  return rows;
 }
 
-bool NeedsJudge(const std::vector<std::string>& metrics) {
-  const auto& styles = report::MetricStyles();
-  return std::any_of(styles.begin(), styles.end(), [&](const report::MetricStyle& style) {
-    return style.judged && Contains(metrics, style.name);
-  });
-}
-
-absl::Status RunFolds(const FoldsArguments& arguments) {
-  DUET_TRY(Experiment experiment, OpenExperiment(arguments));
-  DUET_TRY(FoldScorer scorer,
-           FoldScorer::Create(experiment.dataset, experiment.folds,
-                              NeedsJudge(arguments.metrics) ? FoldScorer::Judging::kPlain
-                                                            : FoldScorer::Judging::kNone));
-  DUET_TRY(std::vector<report::MethodFigures> rows, Rows(experiment, scorer, arguments));
-  report::ResultSection section = BeginExperiment(
-      arguments, experiment,
+absl::StatusOr<report::Section> RunFolds(const FoldsFlags& flags) {
+  DUET_TRY(const Experiment experiment, OpenExperiment(flags));
+  DUET_TRY(const std::vector<report::MethodFigures> rows, Rows(experiment, flags));
+  report::Section section = BeginExperiment(
+      flags, experiment,
       "Each subject is left out in turn: a method learns from the sequences without that subject "
       "and answers the leaders of the others. Figures are means over the answers of all folds. The "
       "suffix of a row names the input about the follower's first frame: none, the position of its "
       "root (+root) or its pose (+pose).");
-  for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
-  section.tables = Tables(experiment.dataset, arguments, rows);
-  for (const std::string& text : section.text) std::cout << text << "\n";
-  std::cout << "\n";
-  return FinishSection(arguments.section, section);
+  for (const report::MetricStyle& style : report::MetricStyles()) {
+    if (!Contains(flags.metrics, style.name)) continue;
+    report::Table& table =
+        section.tables.emplace_back(MetricTable(style, experiment.dataset.classes, rows));
+    const bool distance = style.name == "afd" || style.name == "afd_squared";
+    if (flags.printed && distance) AddPrintedRows(report::PaperAfdSbu(), &table);
+    if (flags.printed && style.name == report::kFrechet) {
+      AddPrintedRows(report::PaperFidSbu(), &table);
+    }
+  }
+  return section;
 }
 
 }  // namespace
 
-void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto [arguments, command] = AddCommand(
-      "folds", "Figures of models and baselines, leaving one subject out", RunFolds, app, chosen);
-  arguments->starts = StartNames();
-  AddExperimentFlags("10_folds", "Leave one subject out", arguments, command);
-  AddModelFlags(ModelNeeded::kNo, &arguments->models, command);
-  AddStartsFlag(&arguments->starts, command);
+Measure AddFoldsCommand(CLI::App* command) {
+  const auto flags = std::make_shared<FoldsFlags>();
+  flags->starts = {"none", "root", "pose"};
+  AddExperimentFlags(flags.get(), command);
+  AddModelFlags(flags.get(), command);
+  AddStartsFlag(flags.get(), command);
   std::vector<std::string> baselines = baselines::BaselineNames();
   baselines.push_back(kNoBaseline);
-  AddNames("--baselines", &arguments->baselines, baselines, "rows of baselines; none: no such row",
+  AddNames("--baselines", &flags->baselines, baselines, "rows of baselines; none: no such row",
            command);
   std::vector<std::string> metrics;
   for (const report::MetricStyle& style : report::MetricStyles()) metrics.push_back(style.name);
-  AddNames("--metrics", &arguments->metrics, metrics, "tables to print", command);
-  command->add_option("--printed", arguments->printed, "add the paper's rows: afd, fid")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"afd", "fid"}));
+  AddNames("--metrics", &flags->metrics, metrics, "tables to print", command);
+  command->add_flag("--printed", flags->printed, "add the rows that the paper prints");
+  return [flags] { return RunFolds(*flags); };
 }
 
 }  // namespace duet::evaluation::program

@@ -1,30 +1,31 @@
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/string_view.h"
 #include "model/authoring/made_leaders.h"
+#include "model/base/angle.h"
 #include "model/base/split_mix.h"
+#include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/body/build.h"
-#include "model/dataset/dataset.h"
+#include "model/body/contact.h"
+#include "model/body/grade.h"
+#include "model/body/liveliness.h"
+#include "model/body/posture.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/engine/live_synthesis.h"
-#include "model/evaluation/experiments/answers.h"
-#include "model/evaluation/experiments/plausibility.h"
-#include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/report/result_section.h"
+#include "model/evaluation/program/measures.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/filter.h"
 #include "model/motion/resample.h"
+#include "model/retargeting/rig_fitting.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -32,66 +33,69 @@ namespace {
 namespace fs = std::filesystem;
 using motion::Poses;
 
-// Length of the pictures of the worst answers.
-constexpr double kPictureSeconds = 4;
+// A clip counts as twisted from this angle between shoulders and hips on, in any frame.
+constexpr double kTwistedClipDegrees = 60;
+// A joint that turns faster than this is a fault.
+constexpr double kTurnDegreesPerSecond = 900;
 // Leaders who do not move, for measurements of stillness: their length, unless --seconds is less;
 // the beginning, in which a follower may still come to rest; and the end.
 constexpr double kStillSeconds = 15, kSettlingSeconds = 3, kLastSeconds = 2;
 
-struct PlausibleArguments {
+struct PlausibleFlags : ExperimentFlags {
   std::string leaders;
   double seconds = 60;
-  std::string data;   // captured pairs; may be empty
-  int worst = 0;      // answers to picture
   bool each = false;  // a row for each answer, too
   bool still = true;  // also leaders who do not move
-  ModelChoice models;
-  experiments::AskedSamples asked;
-  SectionFlags section = {"19_plausible", "Plausible followers of foreign leaders"};
 };
 
-// The motion files below a folder as leaders of a model, in the order of their paths, each cut to
-// `seconds`. Reports files that cannot be read, and leaves them out.
-absl::StatusOr<std::vector<dataset::Sequence>> ReadLeaders(const PlausibleArguments& arguments,
-                                                           const motion::Skeleton& skeleton) {
-  DUET_TRY(const std::vector<fs::path> files, dataset::MotionFilesBelow(arguments.leaders));
+// The fastest turn of a joint of the rig against its parent, degrees per second.
+double FastestTurn(const motion::Skeleton& skeleton, const Poses& poses, double rate) {
+  const retargeting::RigAnimation animation =
+      retargeting::AnimateRig(skeleton, {skeleton.joint_names, rate, poses});
+  double fastest = 0;
+  for (size_t t = 1; t < animation.frames.size(); ++t) {
+    for (size_t j = 0; j < animation.rig.joints.size(); ++j) {
+      const double angle =
+          Angle(animation.frames[t - 1].rotations[j], animation.frames[t].rotations[j]);
+      fastest = std::max(fastest, base::kDegreesPerRadian * angle * rate);
+    }
+  }
+  return fastest;
+}
+
+// The motion files below a folder as leaders of a model, in the order of their paths, and for SBU's
+// skeleton those that formulas make, each cut to `seconds`. Reports files that cannot be read, and
+// leaves them out.
+absl::StatusOr<std::vector<dataset::Sequence>> ReadLeaders(const PlausibleFlags& flags,
+                                                           const engine::ModelDescription& model) {
+  DUET_TRY(const std::vector<fs::path> files, dataset::MotionFilesBelow(flags.leaders));
   std::vector<dataset::Sequence> leaders;
   formats::ReadOptions options;
-  options.skeleton = skeleton;
+  options.skeleton = model.skeleton;
   for (const fs::path& file : files) {
     absl::StatusOr<motion::Clip> leader = formats::ReadLeader(file, options);
     if (!leader.ok()) {
       std::cerr << absl::StrCat("left out: ", leader.status().message(), "\n");
       continue;
     }
-    const int most = static_cast<int>(arguments.seconds * leader->frame_rate_hz);
+    const int most = static_cast<int>(flags.seconds * leader->frame_rate_hz);
     if (leader->frame_count() > most) leader->poses.Resize(most);
-    dataset::Sequence sequence;
+    dataset::Sequence& sequence = leaders.emplace_back();
     sequence.id = file.filename().string();
     sequence.pair.leader = *std::move(leader);
-    leaders.push_back(std::move(sequence));
+  }
+  if (leaders.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--leaders: expected a folder with motion files, got ", flags.leaders));
+  }
+  if (model.skeleton.joint_names != motion::SbuSkeleton().joint_names) return leaders;
+  for (const char* const made : authoring::kMadeLeaders) {
+    dataset::Sequence& sequence = leaders.emplace_back();
+    sequence.id = made;
+    sequence.pair.leader = {model.skeleton.joint_names, model.frame_rate_hz,
+                            authoring::MakeLeader(made, flags.seconds, model.frame_rate_hz)};
   }
   return leaders;
-}
-
-// An answer to a leader, and its figures.
-struct Answer {
-  const dataset::Sequence* leader;
-  int label;
-  uint64_t seed;
-  Poses follower;
-  experiments::PairFigures figures;
-  experiments::WorstPart worst;
-};
-
-// How people meet in a class of a model.
-experiments::ClassContacts ContactsOf(const engine::ModelDescription& model, int label) {
-  const std::string& name = model.classes[static_cast<size_t>(label)];
-  experiments::ClassContacts contacts;
-  for (const engine::HandContact& contact : model.hand_contacts) {
-    contacts.hands_meet |= contact.interaction_class == name;
-  }
-  return contacts;
 }
 
 // The n-th seed of the answers: one that a server gives callers who name none, if the model has a
@@ -101,139 +105,57 @@ uint64_t SeedOf(const engine::ModelDescription& model, uint64_t n) {
   return seeds.empty() ? n : seeds[base::SplitMix(n, 1) % seeds.size()];
 }
 
-// The answers to all leaders with one seed each, for one class.
-absl::Status AddAnswers(const PlausibleArguments& arguments, const engine::Synthesizer& synthesizer,
-                        const std::vector<dataset::Sequence>& leaders, int label, int sample,
-                        const experiments::Plausibility& plausibility,
-                        std::vector<Answer>* answers) {
-  const engine::ModelDescription& model = synthesizer.description();
-  const engine::LabelTrack labels(experiments::OneClass(model.class_count(), label));
-  std::vector<experiments::LabelledLeader> asked;
+// The leaders with one label vector. Each has its own seed.
+std::vector<LabelledLeader> Label(const std::vector<dataset::Sequence>& leaders,
+                                  const std::vector<float>& weights, uint64_t seed,
+                                  const engine::ModelDescription& model) {
+  std::vector<LabelledLeader> labelled;
   for (const dataset::Sequence& leader : leaders) {
-    const uint64_t n = arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(sample);
-    asked.push_back(Ask(leader, labels, arguments.asked, SeedOf(model, n)));
+    labelled.push_back({&leader, weights, SeedOf(model, seed + labelled.size() * 1000)});
   }
-  DUET_TRY(auto followers, SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone));
-  for (size_t i = 0; i < leaders.size(); ++i) {
-    const motion::Clip& leader = leaders[i].pair.leader;
-    Answer answer{&leaders[i], label, asked[i].sampling.seed, std::move(followers[i]), {}, {}};
-    answer.figures = plausibility.Measure(leader.poses, answer.follower, leader.frame_rate_hz,
-                                          ContactsOf(model, label));
-    answer.worst = experiments::FindWorstPart(
-        answer.figures.faults, static_cast<int>(kPictureSeconds * leader.frame_rate_hz));
-    answer.worst.faults /= leader.frame_rate_hz;
-    answers->push_back(std::move(answer));
-  }
-  return absl::OkStatus();
+  return labelled;
 }
 
-// A table with a column for each figure of an answer.
-report::Table FiguresTable(const std::string& title) {
-  report::Table table{title};
-  for (const experiments::PairFigure& figure : experiments::Plausibility::Figures()) {
-    table.columns.push_back(figure.name);
+// The figures of pairs with one class: the mean of each column, the largest of "hips off".
+std::vector<double> Combine(const std::vector<std::vector<double>>& pairs) {
+  std::vector<double> combined = report::ColumnMeans(pairs);
+  const std::vector<std::string>& names = PlausibleFigures();
+  const size_t hips_off =
+      static_cast<size_t>(std::find(names.begin(), names.end(), "hips off") - names.begin());
+  for (const std::vector<double>& pair : pairs) {
+    combined[hips_off] = std::max(combined[hips_off], pair[hips_off]);
   }
-  table.decimals = 3;
-  return table;
+  return combined;
 }
 
 // A row for each class with the figures of its pairs, and their mean. Shapes: pairs [classes].
 report::Table FiguresTable(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<std::vector<experiments::PairFigures>>& pairs) {
-  report::Table table = FiguresTable(title);
+                           const std::vector<std::vector<std::vector<double>>>& pairs) {
+  report::Table table{title, PlausibleFigures()};
+  table.decimals = 3;
   std::vector<std::vector<double>> rows;
   for (size_t c = 0; c < classes.size(); ++c) {
     if (pairs[c].empty()) continue;
-    rows.push_back(experiments::Combine(pairs[c]));
+    rows.push_back(Combine(pairs[c]));
     table.rows.push_back({classes[c], rows.back()});
   }
   table.rows.push_back({"mean", report::ColumnMeans(rows)});
-  table.notes = experiments::Plausibility::Notes();
+  table.notes = {
+      "Twisted clips: share of answers in which shoulders and hips differ by more than 60 degrees "
+      "in any frame. Twisted: share of frames above 45 degrees. Both feet: "
+      "share of frames in which the slower ankle moves faster than 10 cm/s; leader's: the same of "
+      "the leaders.",
+      "Heads, trunks: share of frames in which the heads are nearer than 18 cm, the axes of the "
+      "trunks nearer than 16 cm. Hands: mean distance of the nearest hands while the leader "
+      "reaches one out, metres. Distance: of the roots, metres. Speed: of the joints, m/s.",
+      "Turns: share of answers in which a joint of the rig turns faster than 900 degrees a second. "
+      "Lean: largest of the trunk over one second, degrees.",
+      "Facing: how far hips and shoulders are turned away from the leader, mean over the frames, "
+      "degrees.",
+      "Hips off: by how much the hips are narrower or wider than their median width, as a share of "
+      "it, in the worst frame of all answers. Hips: mean height of the hips above the lower foot, "
+      "in lengths of the leg. Knees: mean bend, degrees."};
   return table;
-}
-
-const char* SideOf(absl::string_view joint_name) {
-  if (absl::StrContains(joint_name, "left")) return "left";
-  return absl::StrContains(joint_name, "right") ? "right" : "middle";
-}
-
-nlohmann::ordered_json BonesToJson(const motion::Skeleton& skeleton) {
-  nlohmann::ordered_json bones = nlohmann::ordered_json::array();
-  for (const motion::Bone& bone : skeleton.bones) {
-    bones.push_back({{"parent", bone.parent},
-                     {"child", bone.child},
-                     {"side", SideOf(skeleton.joint_names[static_cast<size_t>(bone.child)])}});
-  }
-  return bones;
-}
-
-// Shape: [frames][joints][3].
-nlohmann::ordered_json PosesToJson(const motion::Poses& poses) {
-  const auto rounded = [](double metres) { return std::round(metres * 1e4) / 1e4; };
-  nlohmann::ordered_json frames = nlohmann::ordered_json::array();
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    nlohmann::ordered_json joints = nlohmann::ordered_json::array();
-    for (const motion::Vec3& p : poses[t]) {
-      joints.push_back({rounded(p.x), rounded(p.y), rounded(p.z)});
-    }
-    frames.push_back(std::move(joints));
-  }
-  return frames;
-}
-
-// The data of a figure: a strip of moments of two stick figures, and an animation. Positions are in
-// metres, rounded to 0.1 mm.
-nlohmann::ordered_json PosePlot(const std::string& title, const engine::ModelDescription& model,
-                                const Poses& leader, const Poses& follower) {
-  const int head = model.skeleton.Find("head");
-  nlohmann::ordered_json pair = {
-      {"name", model.name}, {"leader", PosesToJson(leader)}, {"follower", PosesToJson(follower)}};
-  return {{"kind", "poses"},
-          {"title", title},
-          {"frame_rate_hz", model.frame_rate_hz},
-          {"root", model.skeleton.root},
-          {"head", head < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(head)},
-          {"bones", BonesToJson(model.skeleton)},
-          {"pairs", nlohmann::ordered_json::array({std::move(pair)})}};
-}
-
-// A row for each answer, so that answers of two programs can be compared one by one.
-report::Table EachAnswer(const engine::ModelDescription& model,
-                         const std::vector<Answer>& answers) {
-  report::Table table = FiguresTable("each answer");
-  for (const Answer& answer : answers) {
-    const std::string& name = model.classes[static_cast<size_t>(answer.label)];
-    table.rows.push_back(
-        {absl::StrCat(name, " ", answer.leader->id, " ", answer.seed), answer.figures.values});
-  }
-  return table;
-}
-
-// Pictures of the worst seconds of the worst answers.
-void AddPictures(const engine::ModelDescription& model, const std::vector<Answer>& answers,
-                 int count, report::ResultSection* section) {
-  std::vector<const Answer*> worst;
-  for (const Answer& answer : answers) worst.push_back(&answer);
-  std::stable_sort(worst.begin(), worst.end(), [](const Answer* a, const Answer* b) {
-    return a->worst.faults > b->worst.faults;
-  });
-  worst.resize(std::min(worst.size(), static_cast<size_t>(count)));
-  for (size_t n = 0; n < worst.size(); ++n) {
-    const Answer& answer = *worst[n];
-    const motion::Clip& leader = answer.leader->pair.leader;
-    const int first = answer.worst.first;
-    const int frames = std::min(static_cast<int>(kPictureSeconds * leader.frame_rate_hz),
-                                leader.frame_count() - first);
-    const std::string name = model.classes[static_cast<size_t>(answer.label)];
-    const std::string caption =
-        absl::StrCat(name, ", leader ", answer.leader->id, " from ",
-                     static_cast<int>(first / leader.frame_rate_hz), " s, seed ", answer.seed);
-    section->figures.push_back(
-        {absl::StrCat(section->id, "_worst_", section->figures.size() + 1),
-         absl::StrCat(caption, ": leader blue, follower orange; paler on the left of the body."),
-         PosePlot(caption, model, motion::Part(leader.poses, first, frames),
-                  motion::Part(answer.follower, first, frames))});
-  }
 }
 
 // The leaders' first poses, held.
@@ -243,11 +165,10 @@ std::vector<dataset::Sequence> HoldFirstPoses(const std::vector<dataset::Sequenc
   for (const dataset::Sequence& leader : leaders) {
     dataset::Sequence& still = held.emplace_back();
     still.id = leader.id;
-    const motion::Clip& moving = leader.pair.leader;
     motion::Clip& clip = still.pair.leader;
-    clip.joint_names = moving.joint_names;
+    clip.joint_names = leader.pair.leader.joint_names;
     clip.frame_rate_hz = frame_rate_hz;
-    for (int t = 0; t < seconds * frame_rate_hz; ++t) clip.Append(moving.poses[0]);
+    for (int t = 0; t < seconds * frame_rate_hz; ++t) clip.Append(leader.pair.leader.poses[0]);
   }
   return held;
 }
@@ -268,38 +189,30 @@ std::vector<double> StillnessOf(const motion::Skeleton& skeleton, const Poses& f
 }
 
 // Followers of leaders who do not move: without a class and with each, in clips and live.
-absl::StatusOr<report::Table> StillnessTable(const PlausibleArguments& arguments,
-                                             const std::string& name,
+absl::StatusOr<report::Table> StillnessTable(const PlausibleFlags& flags, const std::string& name,
                                              const engine::Synthesizer& synthesizer,
                                              const std::vector<dataset::Sequence>& leaders) {
   const engine::ModelDescription& model = synthesizer.description();
-  const double seconds = std::min(arguments.seconds, kStillSeconds);
+  const double seconds = std::min(flags.seconds, kStillSeconds);
   const std::vector<dataset::Sequence> held = HoldFirstPoses(leaders, seconds, model.frame_rate_hz);
   report::Table table{
       absl::StrCat(name, ": followers of ", held.size(), " leaders who do not move"),
       {"speed", "hand up", "feet apart", "hips"}};
   for (const bool live : {false, true}) {
     if (live && !engine::AnswersLive(model)) break;
-    experiments::AskedSamples asked = arguments.asked;
-    asked.live_delay = live ? std::optional(arguments.asked.live_delay.value_or(0)) : std::nullopt;
+    Asked asked = flags.asked;
+    asked.live_delay = live ? std::optional(asked.live_delay.value_or(0)) : std::nullopt;
     for (int c = -1; c < model.class_count(); ++c) {
-      const std::vector<float> weights = c < 0 ? std::vector<float>(model.classes.size())
-                                               : experiments::OneClass(model.class_count(), c);
-      std::vector<experiments::LabelledLeader> labelled;
-      for (const dataset::Sequence& leader : held) {
-        labelled.push_back(Ask(leader, engine::LabelTrack(weights), asked,
-                               SeedOf(model, asked.seed + labelled.size() * 1000)));
-      }
-      DUET_TRY(auto followers,
-               SynthesizeSequences(synthesizer, labelled, experiments::StartGiven::kNone));
+      const std::vector<float> weights =
+          c < 0 ? std::vector<float>(model.classes.size()) : OneClass(model.class_count(), c);
+      DUET_TRY(const auto followers,
+               SynthesizeSequences(synthesizer, Label(held, weights, asked.seed, model), asked));
       const std::string row = absl::StrCat(
           c < 0 ? "weights 0" : model.classes[static_cast<size_t>(c)], live ? ", live" : "");
       std::vector<std::vector<double>> figures;
       for (size_t i = 0; i < followers.size(); ++i) {
         figures.push_back(StillnessOf(model.skeleton, followers[i], model.frame_rate_hz));
-        if (arguments.each) {
-          table.rows.push_back({absl::StrCat(row, ", ", held[i].id), figures.back()});
-        }
+        if (flags.each) table.rows.push_back({absl::StrCat(row, ", ", held[i].id), figures[i]});
       }
       table.rows.push_back({row, report::ColumnMeans(figures)});
     }
@@ -315,119 +228,141 @@ absl::StatusOr<report::Table> StillnessTable(const PlausibleArguments& arguments
   return table;
 }
 
-absl::Status AddModel(const PlausibleArguments& arguments, const std::string& name,
-                      const engine::Synthesizer& synthesizer, report::ResultSection* section) {
+absl::Status CheckSkeleton(const std::string& what, const motion::Skeleton& skeleton) {
+  if (body::PairMeter::CanMeasure(skeleton, body::FindBody(skeleton))) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(what,
+                   ": expected a skeleton with hips, feet, a chest and two arms whose joints are "
+                   "named left and right"));
+}
+
+absl::Status AddModel(const PlausibleFlags& flags, const std::string& name,
+                      const engine::Synthesizer& synthesizer, report::Section* section) {
   const engine::ModelDescription& model = synthesizer.description();
-  const experiments::Plausibility plausibility(model.skeleton);
-  if (!plausibility.possible()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name,
-                     ": expected a skeleton with hips, feet, a chest and two arms whose "
-                     "joints are named left and right"));
-  }
-  DUET_TRY(std::vector<dataset::Sequence> leaders, ReadLeaders(arguments, model.skeleton));
-  if (leaders.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--leaders: expected a folder with motion files, got ", arguments.leaders));
-  }
-  if (model.skeleton.joint_names == motion::SbuSkeleton().joint_names) {
-    for (const char* const made : authoring::kMadeLeaders) {
-      dataset::Sequence& leader = leaders.emplace_back();
-      leader.id = made;
-      leader.pair.leader = {model.skeleton.joint_names, model.frame_rate_hz,
-                            authoring::MakeLeader(made, arguments.seconds, model.frame_rate_hz)};
+  DUET_RETURN_IF_ERROR(CheckSkeleton(name, model.skeleton));
+  DUET_TRY(const std::vector<dataset::Sequence> leaders, ReadLeaders(flags, model));
+  report::Table each{"each answer", PlausibleFigures()};
+  each.decimals = 3;
+  std::vector<std::vector<std::vector<double>>> by_class(model.classes.size());
+  for (size_t c = 0; c < by_class.size(); ++c) {
+    const std::vector<float> weights = OneClass(model.class_count(), static_cast<int>(c));
+    for (int n = 0; n < flags.asked.samples; ++n) {
+      const uint64_t seed = flags.asked.seed + static_cast<uint64_t>(n);
+      const std::vector<LabelledLeader> asked = Label(leaders, weights, seed, model);
+      DUET_TRY(const auto followers, SynthesizeSequences(synthesizer, asked, flags.asked));
+      for (size_t i = 0; i < leaders.size(); ++i) {
+        const motion::Clip& leader = leaders[i].pair.leader;
+        by_class[c].push_back(
+            MeasurePlausibility(model.skeleton, leader.poses, followers[i], leader.frame_rate_hz));
+        each.rows.push_back({absl::StrCat(model.classes[c], " ", leaders[i].id, " ", asked[i].seed),
+                             by_class[c].back()});
+      }
     }
-  }
-  std::vector<Answer> answers;
-  for (int c = 0; c < model.class_count(); ++c) {
-    for (int n = 0; n < arguments.asked.samples; ++n) {
-      DUET_RETURN_IF_ERROR(
-          AddAnswers(arguments, synthesizer, leaders, c, n, plausibility, &answers));
-    }
-  }
-  std::vector<std::vector<experiments::PairFigures>> by_class(model.classes.size());
-  for (const Answer& answer : answers) {
-    by_class[static_cast<size_t>(answer.label)].push_back(answer.figures);
   }
   section->tables.push_back(FiguresTable(
       absl::StrCat(name, ": followers of ", leaders.size(), " leaders"), model.classes, by_class));
-  if (arguments.still) {
-    DUET_TRY(report::Table stillness, StillnessTable(arguments, name, synthesizer, leaders));
-    section->tables.push_back(std::move(stillness));
+  if (flags.still) {
+    DUET_TRY(section->tables.emplace_back(), StillnessTable(flags, name, synthesizer, leaders));
   }
-  if (arguments.each) section->tables.push_back(EachAnswer(model, answers));
-  AddPictures(model, answers, arguments.worst, section);
+  if (flags.each) section->tables.push_back(std::move(each));
   return absl::OkStatus();
 }
 
 // The same figures for captured pairs.
-absl::Status AddCaptured(const std::string& folder, report::ResultSection* section) {
-  DUET_TRY(dataset::Dataset data, dataset::ReadDataset(folder));
-  const experiments::Plausibility plausibility(data.skeleton);
-  if (!plausibility.possible()) {
-    return absl::InvalidArgumentError(
-        "--data: expected a skeleton with hips, feet, a chest and two named arms");
-  }
-  std::vector<std::vector<experiments::PairFigures>> by_class(data.classes.size());
+absl::Status AddCaptured(const std::string& folder, report::Section* section) {
+  DUET_TRY(const dataset::Dataset data, dataset::ReadDataset(folder));
+  DUET_RETURN_IF_ERROR(CheckSkeleton("--data", data.skeleton));
+  std::vector<std::vector<std::vector<double>>> by_class(data.classes.size());
   for (const dataset::Sequence& sequence : data.sequences) {
-    const motion::ClipPair& pair = sequence.pair;
-    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(plausibility.Measure(
-        pair.leader.poses, pair.follower.poses, pair.leader.frame_rate_hz, {}));
+    const auto& [leader, follower] = sequence.pair;
+    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(
+        MeasurePlausibility(data.skeleton, leader.poses, follower.poses, leader.frame_rate_hz));
   }
   section->tables.push_back(
       FiguresTable(absl::StrCat("captured people: ", DescribeData(data)), data.classes, by_class));
   return absl::OkStatus();
 }
 
-absl::Status RunPlausible(const PlausibleArguments& arguments) {
-  DUET_TRY(std::vector<FoldModel> models, OpenModels(arguments.models));
-  report::ResultSection section = BeginSection(
-      arguments.section,
+absl::StatusOr<report::Section> RunPlausible(const PlausibleFlags& flags) {
+  DUET_TRY(const std::vector<FoldModel> models, OpenModels(flags));
+  report::Section section;
+  section.text = {
       "What a viewer would notice in followers of leaders that the model never saw: "
       "every motion file below a folder and, for the skeleton of SBU, four that "
       "formulas make, answered in every class at weight 1 without a start; and their first "
-      "poses, held, answered also without a class.");
-  section.settings.emplace_back("seeds", absl::StrCat(arguments.asked.samples));
-  AddSamplingSettings(arguments.asked, &section);
+      "poses, held, answered also without a class."};
   for (const FoldModel& model : models) {
-    DUET_TRY(SharedSynthesizer synthesizer, model.load(""));
-    DUET_RETURN_IF_ERROR(AddModel(arguments, model.name, *synthesizer, &section));
+    DUET_TRY(const SharedSynthesizer synthesizer, model.load(""));
+    DUET_RETURN_IF_ERROR(AddModel(flags, model.name, *synthesizer, &section));
   }
-  if (!arguments.data.empty()) {
-    DUET_RETURN_IF_ERROR(AddCaptured(arguments.data, &section));
-  }
-  return FinishSection(arguments.section, section);
+  if (!flags.data.empty()) DUET_RETURN_IF_ERROR(AddCaptured(flags.data, &section));
+  return section;
 }
 
 }  // namespace
 
-void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto [arguments, command] =
-      AddCommand("plausible", "What a viewer would notice in followers of any leaders",
-                 RunPlausible, app, chosen);
-  arguments->models.as_served = true;
-  arguments->asked.samples = 1;
-  AddSectionFlags(&arguments->section, command);
-  command->add_option("--leaders", arguments->leaders, "folder of motion files, with subfolders")
-      ->type_name(kData)
+const std::vector<std::string>& PlausibleFigures() {
+  static const auto& names = *new std::vector<std::string>{
+      "twisted clips", "twisted",  "both feet", "leader's",       "heads", "trunks",
+      "hands",         "distance", "speed",     "leader's speed", "turns", "lean",
+      "facing",        "hips off", "hips",      "knees"};
+  return names;
+}
+
+std::vector<double> MeasurePlausibility(const motion::Skeleton& skeleton, const Poses& leader,
+                                        const Poses& follower, double rate) {
+  const body::Body body = body::FindBody(skeleton);
+  body::PairMeter meter(skeleton, body, rate);
+  body::GradeSum sum;
+  double most_twisted = 0, heads = 0, trunks = 0;
+  std::vector<double> hands;
+  for (int t = 0; t < leader.frame_count(); ++t) {
+    const body::FrameMeasures frame = meter.Add(leader[t], follower[t]);
+    sum.Add(frame);
+    most_twisted = std::max(most_twisted, frame.twist_degrees);
+    heads += frame.head_overlap > 0;
+    trunks += frame.trunk_overlap > 0;
+    const std::optional<double> apart =
+        body::OfferedHandDistance(body, skeleton.root, leader[t], follower[t]);
+    if (apart) hands.push_back(*apart);
+  }
+  const body::Grade grade = sum.Get();
+  const body::BuildFigures build = body::MeasureBuild(skeleton, body, follower);
+  const double frames = leader.frame_count();
+  return {most_twisted > kTwistedClipDegrees ? 1.0 : 0.0,
+          grade.twisted,
+          grade.skating,
+          grade.leader_skating,
+          heads / frames,
+          trunks / frames,
+          base::Mean(hands),
+          body::RootDistance(leader, follower, skeleton),
+          body::JointSpeed(motion::WithoutNoise(follower, rate), rate),
+          body::JointSpeed(motion::WithoutNoise(leader, rate), rate),
+          FastestTurn(skeleton, follower, rate) > kTurnDegreesPerSecond ? 1.0 : 0.0,
+          body::MeasureLean(follower, skeleton, rate, body::LeanFrom::kHips).max_degrees,
+          body::FacingDegrees(leader, follower, skeleton),
+          build.HipsOff(),
+          build.hips_over_leg,
+          build.knee_degrees};
+}
+
+Measure AddPlausibleCommand(CLI::App* command) {
+  const auto flags = std::make_shared<PlausibleFlags>();
+  flags->as_served = true;
+  AddFolder("--leaders", &flags->leaders, "folder of motion files, with subfolders", command)
       ->check(CLI::ExistingDirectory)
       ->required();
-  AddNumber("--seconds", &arguments->seconds, 1.0, 600.0, "longest leader; longer ones are cut",
+  AddNumber("--seconds", &flags->seconds, 1.0, 600.0, "longest leader; longer ones are cut",
             command);
-  command
-      ->add_option("--data", arguments->data,
-                   "captured pairs with the same figures, for comparison")
-      ->type_name(kData)
+  AddFolder("--data", &flags->data, "captured pairs with the same figures, for comparison", command)
       ->check(CLI::ExistingDirectory);
-  AddNumber("--worst", &arguments->worst, 0, 100,
-            "answers to picture: the worst seconds of so many of the worst (with --out)", command);
-  AddNumber("--samples", &arguments->asked.samples, 1, 1000,
-            "answers to each leader, each with its seed", command);
-  command->add_flag("--each", arguments->each, "a row for each answer, too");
-  command->add_flag("!--no-still", arguments->still, "leave out leaders who do not move");
-  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
-  command->add_flag("!--own", arguments->models.as_served, "measure the network's own answers");
-  AddSamplingFlags(&arguments->asked, command);
+  command->add_flag("--each", flags->each, "a row for each answer, too");
+  command->add_flag("!--no-still", flags->still, "leave out leaders who do not move");
+  AddModelFlags(flags.get(), command);
+  command->add_flag("!--own", flags->as_served, "measure the network's own answers");
+  AddSamplingFlags(&flags->asked, command);
+  return [flags] { return RunPlausible(*flags); };
 }
 
 }  // namespace duet::evaluation::program

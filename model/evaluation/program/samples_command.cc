@@ -1,76 +1,106 @@
-#include <iostream>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
 #include "model/evaluation/baselines/baselines.h"
-#include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/fold_scorer.h"
 #include "model/evaluation/report/metric_tables.h"
-#include "model/evaluation/report/result_section.h"
+#include "model/motion/filter.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset,
-                                                 const FoldScorer& scorer, const FoldModel& model,
-                                                 const std::string& start,
-                                                 const experiments::AskedSamples& asked) {
-  const std::string row = model.name + StartSuffix(ParseStart(start));
-  std::vector<metrics::SampledMotions> answers;
-  for (const Fold& fold : scorer.folds()) {
-    DUET_TRY(answers.emplace_back(), Answers(dataset, model, fold, fold.split.test, start, asked));
-    std::cerr << absl::StrCat(row, " without ", fold.subject, ": ", fold.split.test.size(),
-                              " leaders, ", answers.back().size(), " answers each\n");
-  }
-  return scorer.ScoreSamples(row, answers);
-}
+using metrics::JudgedFold;
+using metrics::SampledMotions;
 
-// The same figures for captured people who answer another leader of the class.
-absl::StatusOr<report::MethodFigures> ScoreOtherPeople(const dataset::Dataset& dataset,
-                                                       const FoldScorer& scorer,
-                                                       const experiments::AskedSamples& asked) {
-  std::vector<metrics::SampledMotions> answers;
-  for (const Fold& fold : scorer.folds()) {
-    metrics::SampledMotions of_fold(static_cast<size_t>(asked.samples));
-    for (size_t n = 0; n < of_fold.size(); ++n) {
-      DUET_TRY(std::vector<motion::Poses> followers,
-               baselines::AnswerWithOtherPeople(dataset, fold.split.train, fold.split.test,
-                                                asked.seed + n));
-      auto follower = followers.begin();
-      for (const int index : fold.split.test) {
-        of_fold[n].push_back({index, std::move(*follower++)});
-      }
+FoldAnswers Filtered(const dataset::Dataset& dataset, FoldAnswers folds) {
+  for (std::vector<metrics::ScoredMotion>& motions : folds) {
+    for (metrics::ScoredMotion& motion : motions) {
+      const double rate = SequenceOf(dataset, motion).pair.leader.frame_rate_hz;
+      motion.follower = motion::WithoutNoise(motion.follower, rate);
     }
-    answers.push_back(std::move(of_fold));
   }
-  return scorer.ScoreSamples("other people", answers);
+  return folds;
 }
 
-absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experiment,
-                                                        const FoldScorer& scorer,
-                                                        const ExperimentFlags& flags) {
-  std::vector<report::MethodFigures> rows;
-  DUET_TRY(rows.emplace_back(), scorer.ScoreCapturedSamples());
-  DUET_TRY(rows.emplace_back(), ScoreOtherPeople(experiment.dataset, scorer, flags.asked));
+// Adds values / count to sums, which may still be empty.
+void AddShare(const std::vector<double>& values, size_t count, std::vector<double>* sums) {
+  sums->resize(values.size());
+  for (size_t i = 0; i < values.size(); ++i) (*sums)[i] += values[i] / static_cast<double>(count);
+}
+
+// Scores many answers to each leader of every fold.
+class Scorer {
+ public:
+  // `experiment` must outlive the scorer.
+  static absl::StatusOr<Scorer> Create(const Experiment& experiment) {
+    Scorer scorer(experiment);
+    const dataset::Dataset& dataset = experiment.dataset;
+    const FoldAnswers captured = CapturedAnswers(experiment);
+    DUET_TRY(scorer.judges_, TrainJudges(dataset, experiment.folds));
+    scorer.captured_ = JudgeFolds(scorer.judges_, dataset, captured);
+    scorer.filtered_ = JudgeFolds(scorer.judges_, dataset, Filtered(dataset, captured));
+    return scorer;
+  }
+
+  // Shapes: sets [samples], answers to all leaders each.
+  report::MethodFigures Score(const std::string& row, const std::vector<FoldAnswers>& sets) const {
+    const dataset::Dataset& dataset = experiment_.dataset;
+    const int classes = dataset.class_count();
+    SampledMotions answers;
+    for (const FoldAnswers& set : sets) answers.push_back(Pool(set));
+    report::MethodFigures figures{row, false, ScoreByClass(dataset, Pool(answers))};
+    auto& by_metric = figures.by_metric;
+    by_metric[report::kMeanAnswerAfd] = ScoreByClass(dataset, MeanAnswers(answers))["afd"];
+    by_metric[report::kBestAnswerAfd] = ScoreByClass(dataset, BestAnswers(dataset, answers))["afd"];
+    by_metric[report::kMultimodality] = MultimodalityByClass(dataset, answers);
+    for (const FoldAnswers& set : sets) {
+      const std::vector<JudgedFold> made = JudgeFolds(judges_, dataset, set),
+                                    filtered = JudgeFolds(judges_, dataset, Filtered(dataset, set));
+      const auto add = [&](const char* name, const std::vector<double>& values) {
+        AddShare(values, sets.size(), &by_metric[name]);
+      };
+      add(report::kPooledFrechet, {PooledFrechet(made, captured_)});
+      add(report::kFilteredFrechet, {PooledFrechet(filtered, filtered_)});
+      add(report::kAccuracy, AccuracyByClass(made, classes));
+      add(report::kDiversity, DiversityByClass(made, classes));
+      add(report::kFilteredDiversity, DiversityByClass(filtered, classes));
+    }
+    return figures;
+  }
+
+ private:
+  explicit Scorer(const Experiment& experiment) : experiment_(experiment) {}
+
+  const Experiment& experiment_;
+  std::vector<judge::MotionClassifier> judges_;
+  std::vector<JudgedFold> captured_, filtered_;  // of the captured followers
+};
+
+absl::StatusOr<report::Section> RunSamples(const ExperimentFlags& flags) {
+  DUET_TRY(const Experiment experiment, OpenExperiment(flags));
+  DUET_TRY(const Scorer scorer, Scorer::Create(experiment));
+  std::vector<report::MethodFigures> rows = {
+      scorer.Score("captured", {CapturedAnswers(experiment)})};
+  std::vector<FoldAnswers> others(static_cast<size_t>(flags.asked.samples));
+  for (size_t n = 0; n < others.size(); ++n) {
+    for (const Fold& fold : experiment.folds) {
+      DUET_TRY(others[n].emplace_back(), baselines::AnswerWithOtherPeople(
+                                             experiment.dataset, fold.split, flags.asked.seed + n));
+    }
+  }
+  rows.push_back(scorer.Score("other people", others));
   for (const std::string& start : flags.starts) {
     for (const FoldModel& model : experiment.models) {
-      DUET_TRY(rows.emplace_back(),
-               ScoreModel(experiment.dataset, scorer, model, start, flags.asked));
+      Asked asked = flags.asked;
+      asked.start = start;
+      DUET_TRY(const std::vector<FoldAnswers> sets, AnswerFolds(experiment, model, asked));
+      rows.push_back(scorer.Score(model.name + StartSuffix(start), sets));
     }
   }
-  return rows;
-}
-
-absl::Status RunSamples(const ExperimentFlags& flags) {
-  DUET_TRY(Experiment experiment, OpenExperiment(flags));
-  DUET_TRY(FoldScorer scorer, FoldScorer::Create(experiment.dataset, experiment.folds,
-                                                 FoldScorer::Judging::kFiltered));
-  DUET_TRY(std::vector<report::MethodFigures> rows, Rows(experiment, scorer, flags));
-  report::ResultSection section = BeginAnswers(
+  report::Section section = BeginExperiment(
       flags, experiment,
       "A model that samples answers every leader of every left-out subject several times, each "
       "time with another seed; other models answer once. The average frame distance rewards the "
@@ -79,27 +109,17 @@ absl::Status RunSamples(const ExperimentFlags& flags) {
       "followers' row, neither below nor above it. +pose: the input includes the follower's first "
       "pose. Other people: captured followers of training clips of the same class, drawn at "
       "random, who answered another leader.");
-  section.settings.emplace_back("answers to a leader", absl::StrCat(flags.asked.samples));
-  section.settings.emplace_back("direction of the partner",
-                                flags.asked.tell_direction ? "in the request" : "from the leader");
-  for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
   section.tables = {report::SampleSummary(rows)};
-  for (report::Table& table : report::SampleTables(experiment.dataset.classes, rows)) {
-    section.tables.push_back(std::move(table));
-  }
-  return FinishSection(flags.section, section);
+  return section;
 }
 
 }  // namespace
 
-void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto [flags, command] =
-      AddCommand("samples", "Figures of many answers to each leader", RunSamples, app, chosen);
-  AddAnswersFlags("14_samples", "Many answers to one leader", flags, command);
-  AddNumber("--samples", &flags->asked.samples, 1, 1000,
-            "answers to each leader by a model that samples", command);
-  command->add_flag("!--untold-direction", flags->asked.tell_direction,
-                    "estimate the partner's direction from the leader's motion");
+Measure AddSamplesCommand(CLI::App* command) {
+  const auto flags = std::make_shared<ExperimentFlags>();
+  flags->asked.samples = 10;
+  AddAnswersFlags(flags.get(), command);
+  return [flags] { return RunSamples(*flags); };
 }
 
 }  // namespace duet::evaluation::program

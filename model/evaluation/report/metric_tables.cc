@@ -1,6 +1,5 @@
 #include "model/evaluation/report/metric_tables.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -25,16 +24,14 @@ void AddNotes(const MetricStyle& style, Table* table) {
   }
 }
 
-constexpr char kSpeedRatio[] = "speed_ratio", kRangeRatio[] = "range_ratio";
-constexpr char kSpeed[] = "joint_speed", kRange[] = "range_of_motion_m";
-
 // Columns of the summary: a figure and its heading.
 struct Column {
   const char* figure;
   const char* heading;
+  bool ratio = false;  // to the captured followers' figure, class by class
 };
-constexpr Column kSummary[] = {{kSpeedRatio, "speed ratio"},
-                               {kRangeRatio, "range ratio"},
+constexpr Column kSummary[] = {{"joint_speed", "speed ratio", true},
+                               {"range_of_motion_m", "range ratio", true},
                                {kAccuracy, "accuracy"},
                                {kPooledFrechet, "FID"},
                                {kFilteredFrechet, "FID, filt."},
@@ -51,52 +48,26 @@ constexpr Column kSummary[] = {{kSpeedRatio, "speed ratio"},
                                {"penetration_frequency", "pen. freq."},
                                {"penetration_depth_m", "pen. depth"}};
 
-std::vector<MetricStyle> SampleStyles() {
-  constexpr Best kLow = Best::kLowest, kNoBest = Best::kNone;
-  std::vector<MetricStyle> styles = {
-      {kSpeedRatio, "Mean speed of the joints, ratio to captured, both without noise", 2, kNoBest,
-       true},
-      {kRangeRatio, "Range of motion, ratio to captured, both without noise", 2, kNoBest, true},
-      {kMeanAnswerAfd, "Average frame distance of the mean answer, SBU's raw unit", 3, kLow},
-      {kMeanAnswerAfdMetres, "Average frame distance of the mean answer, metres", 3, kLow},
-      {kBestAnswerAfd, "Average frame distance of the best answer, SBU's raw unit", 3, kLow},
-      {kBestAnswerAfdMetres, "Average frame distance of the best answer, metres", 3, kLow},
-      {kMultimodality, "Multimodality: mean distance between answers to one leader, raw unit", 3,
-       kNoBest},
-      {kFilteredDiversity, "Diversity without noise, the judge's features", 2, kNoBest, true,
-       true}};
-  for (const MetricStyle& style : MetricStyles()) styles.push_back(style);
-  return styles;
-}
-
-double Figure(const MethodFigures& method, const std::string& name) {
-  const auto found = method.by_metric.find(name);
-  return found == method.by_metric.end() ? NAN : base::Mean(found->second);
-}
-
-std::vector<MethodFigures> WithRatios(std::vector<MethodFigures> methods) {
-  const auto found = std::find_if(methods.begin(), methods.end(),
-                                  [](const MethodFigures& method) { return method.captured; });
-  if (found == methods.end()) return methods;
-  const auto captured = found->by_metric;
-  for (auto& [name, is_captured, figures] : methods) {
-    for (const auto& [figure, ratio] :
-         {std::pair(kSpeed, kSpeedRatio), std::pair(kRange, kRangeRatio)}) {
-      const auto made = figures.find(figure);
-      const auto real = captured.find(figure);
-      if (made == figures.end() || real == captured.end()) continue;
-      for (size_t c = 0; c < made->second.size(); ++c) {
-        figures[ratio].push_back(made->second[c] / real->second[c]);
-      }
-    }
+// The mean over the classes; NaN if there is no such figure.
+double MeanFigure(const Column& column, const MethodFigures& method,
+                  const MethodFigures& captured) {
+  const auto found = method.by_metric.find(column.figure);
+  if (found == method.by_metric.end()) return NAN;
+  std::vector<double> of_classes = found->second;
+  if (column.ratio) {
+    const std::vector<double>& real = captured.by_metric.at(column.figure);
+    for (size_t c = 0; c < of_classes.size(); ++c) of_classes[c] /= real[c];
   }
-  return methods;
+  return base::Mean(of_classes);
 }
 
-const std::vector<std::string>& SbuClasses() {
-  static const auto& classes = *new std::vector<std::string>{
-      "kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
-  return classes;
+// A table of figures that the paper prints for SBU.
+Table Printed(const char* title, std::vector<TableRow> rows, const char* note) {
+  for (TableRow& row : rows) row.printed = true;
+  return {title,
+          {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"},
+          std::move(rows),
+          {note}};
 }
 
 }  // namespace
@@ -107,9 +78,7 @@ const std::vector<MetricStyle>& MetricStyles() {
       {"afd", "Average frame distance (Eq. 6), SBU's raw unit", 3, kLow},
       {"afd_squared", "Average squared frame distance, raw unit squared", 3, kLow},
       {"afd_m", "Average frame distance, metres", 3, kLow},
-      {"afd_squared_m", "Average squared frame distance, m^2", 3, kLow},
       {"root_aligned_afd", "Average frame distance about the own root, SBU's raw unit", 3, kLow},
-      {"root_aligned_afd_m", "Average frame distance about the own root, metres", 3, kLow},
       {"velocity_error", "Velocity error, m/s", 3, kLow},
       {"bone_length_drift", "Drift of bone lengths, share of the length", 4, kNone, true},
       {"jitter", "Jitter, m/s^3", 1, kNone, true},
@@ -120,7 +89,6 @@ const std::vector<MetricStyle>& MetricStyles() {
       {"penetration_depth_m", "Depth of overlap in those frames, metres", 3, kNone, true},
       {"joint_speed", "Mean speed of the joints without noise, m/s", 3, kNone, true},
       {"range_of_motion_m", "Range of motion without noise, metres", 3, kNone, true},
-      {"filtered_jerk", "Jitter without noise, m/s^3", 1, kNone, true},
       {"lean_degrees", "Lean from hips to neck, degrees", 1, kNone, true},
       {"facing_degrees", "Turned away from the leader, degrees", 1, kNone, true},
       {"root_distance_m", "Distance to the leader, metres", 3, kNone, true},
@@ -170,9 +138,11 @@ Table SampleSummary(const std::vector<MethodFigures>& methods) {
   Table table{"All figures, means over the classes"};
   table.decimals = 3;
   for (const Column& column : kSummary) table.columns.push_back(column.heading);
-  for (const MethodFigures& method : WithRatios(methods)) {
+  for (const MethodFigures& method : methods) {
     TableRow row = {method.name, {}};
-    for (const Column& column : kSummary) row.values.push_back(Figure(method, column.figure));
+    for (const Column& column : kSummary) {
+      row.values.push_back(MeanFigure(column, method, methods.front()));
+    }
     table.rows.push_back(std::move(row));
   }
   table.notes = {
@@ -184,62 +154,41 @@ Table SampleSummary(const std::vector<MethodFigures>& methods) {
   return table;
 }
 
-std::vector<Table> SampleTables(const std::vector<std::string>& classes,
-                                const std::vector<MethodFigures>& methods) {
-  const std::vector<MethodFigures> rows = WithRatios(methods);
-  std::vector<Table> tables;
-  for (const MetricStyle& style : SampleStyles()) {
-    tables.push_back(MetricTable(style, classes, rows));
-    if (tables.back().rows.empty()) tables.pop_back();
-  }
-  return tables;
-}
-
 Table PaperAfdSbu() {
-  return {
+  return Printed(
       "Average frame distance on SBU, as printed (Tables 1 and 4)",
-      SbuClasses(),
-      {{"NN", {.81, .51, .48, .61, .63, .56}, true},
-       {"HMM", {.92, .60, 1.41, .67, 3.84, .66}, true},
-       {"KZBH12", {.65, .45, .42, .48, .53, .48}, true},
-       {"HK14", {.92, .61, .54, .81, .74, .66}, true},
-       {"HFKB15", {.67, .48, .42, .47, .54, .52}, true},
-       {"MSHL22", {.53, .52, .44, .72, .45, .45}, true},
-       {"Goel et al. 2022", {.50, .43, .40, .42, .40, .32}, true},
-       {"w/o D", {.53, .45, .42, .49, .44, .38}, true},
-       {"w/o L_b", {.45, .42, .39, .40, .39, .32}, true},
-       {"w/o L_c", {.59, .45, .55, .46, .41, .40}, true},
-       {"w/o FC", {.55, .47, .46, .49, .41, .40}, true},
-       {"w/o multi-hot embedding", {.51, .48, .50, .66, .46, .45}, true}},
-      {"Printed for seven subjects, six of whom are measured here. The formula printed (Eq. 6) is "
-       "the mean norm; the released code averages the squared norm and keeps the epoch that does "
-       "best on the test set. The figures lie between the two readings, so both are measured: afd "
-       "and afd_squared. The unit is SBU's raw one."},
-      2,
-      Best::kLowest};
+      {{"NN", {.81, .51, .48, .61, .63, .56}},
+       {"HMM", {.92, .60, 1.41, .67, 3.84, .66}},
+       {"KZBH12", {.65, .45, .42, .48, .53, .48}},
+       {"HK14", {.92, .61, .54, .81, .74, .66}},
+       {"HFKB15", {.67, .48, .42, .47, .54, .52}},
+       {"MSHL22", {.53, .52, .44, .72, .45, .45}},
+       {"Goel et al. 2022", {.50, .43, .40, .42, .40, .32}},
+       {"w/o D", {.53, .45, .42, .49, .44, .38}},
+       {"w/o L_b", {.45, .42, .39, .40, .39, .32}},
+       {"w/o L_c", {.59, .45, .55, .46, .41, .40}},
+       {"w/o FC", {.55, .47, .46, .49, .41, .40}},
+       {"w/o multi-hot embedding", {.51, .48, .50, .66, .46, .45}}},
+      "Printed for seven subjects, six of whom are measured here. The formula printed (Eq. 6) is "
+      "the mean norm; the released code averages the squared norm and keeps the epoch that does "
+      "best on the test set. The figures lie between the two readings, so both are measured: afd "
+      "and afd_squared. The unit is SBU's raw one.");
 }
 
 Table PaperFidSbu() {
-  return {"Frechet distance on SBU, as printed (Table 2)",
-          SbuClasses(),
-          {{"MSHL22", {10.8, 20.8, 23.8, 29.5, 16.7, 11.2}, true},
-           {"Goel et al. 2022", {9.3, 16.8, 15.1, 19.3, 11.7, 10.8}, true}},
-          {"The feature extractor is not known: only ratios between rows under one "
-           "extractor can be compared."},
-          1,
-          Best::kLowest};
+  return Printed("Frechet distance on SBU, as printed (Table 2)",
+                 {{"MSHL22", {10.8, 20.8, 23.8, 29.5, 16.7, 11.2}},
+                  {"Goel et al. 2022", {9.3, 16.8, 15.1, 19.3, 11.7, 10.8}}},
+                 "The feature extractor is not known: only ratios between rows under one "
+                 "extractor can be compared.");
 }
 
 Table PaperAugmentation() {
-  return {
-      "Accuracy of a classifier on SBU, as printed (Table 6)",
-      SbuClasses(),
-      {{"original", {.947, .941, .692, .538, .667, .889}, true},
-       {"augmented", {.996, .877, .706, .641, .881, .911}, true}},
-      {"Half of the data trains, half tests; 25 + 25 synthetic sequences are added. The split and "
-       "the number of runs are not printed."},
-      3,
-      Best::kHighest};
+  return Printed("Accuracy of a classifier on SBU, as printed (Table 6)",
+                 {{"original", {.947, .941, .692, .538, .667, .889}},
+                  {"augmented", {.996, .877, .706, .641, .881, .911}}},
+                 "Half of the data trains, half tests; 25 + 25 synthetic sequences are added. The "
+                 "split and the number of runs are not printed.");
 }
 
 }  // namespace duet::evaluation::report

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/evaluation/report/table.h"
+#include "model/evaluation/report/section.h"
 
 namespace duet::evaluation::report {
 
@@ -42,11 +42,9 @@ Table MetricTable(const MetricStyle& style, const std::vector<std::string>& clas
 // classes; otherwise adds a note that they are not. `table` ends in a mean column.
 void AddPrintedRows(const Table& paper, Table* table);
 
-// Figures of a model's many answers, beside those of MetricStyles, by class.
+// Figures of a model's many answers, beside those of MetricStyles.
 inline constexpr char kMeanAnswerAfd[] = "afd_of_mean";
-inline constexpr char kMeanAnswerAfdMetres[] = "afd_of_mean_m";
 inline constexpr char kBestAnswerAfd[] = "afd_of_best";
-inline constexpr char kBestAnswerAfdMetres[] = "afd_of_best_m";
 inline constexpr char kMultimodality[] = "multimodality";
 inline constexpr char kFilteredDiversity[] = "filtered_diversity";
 // Of all classes together: one value.
@@ -54,12 +52,8 @@ inline constexpr char kPooledFrechet[] = "fid_pooled";
 inline constexpr char kFilteredFrechet[] = "fid_pooled_filtered";
 
 // One row per method, every figure the mean over the classes; speed and range of motion as ratios
-// to the row of captured followers, of class means. Requires that row.
+// to the captured followers, of class means. Requires these as the first row, with both figures.
 Table SampleSummary(const std::vector<MethodFigures>& methods);
-
-// By class: the ratios and every figure of MetricStyles and of the above.
-std::vector<Table> SampleTables(const std::vector<std::string>& classes,
-                                const std::vector<MethodFigures>& methods);
 
 // The figures printed by Goel et al. 2022. Every row is marked as printed; a note of each table
 // says what it is comparable with. Columns have this project's class names.

@@ -75,15 +75,6 @@ TEST(PoseSpaceTest, KeepsWhatTheComponentsSpan) {
   EXPECT_GT((line.Reconstruct(line.Project(rows)) - rows).norm(), 0.1);
 }
 
-TEST(TimeWarpedDistanceTest, ForgivesTempo) {
-  Rows slow(6, 1), fast(3, 1), off(3, 1);
-  slow << 0, 0, 1, 1, 2, 2;
-  fast << 0, 1, 2;
-  off << 0.5, 1.5, 2.5;
-  EXPECT_DOUBLE_EQ(TimeWarpedDistance(slow, fast), 0);
-  EXPECT_DOUBLE_EQ(TimeWarpedDistance(fast, off), 0.5);
-}
-
 TEST(StretchToTest, KeepsBothEnds) {
   Rows motion(3, 1);
   motion << 0, 1, 4;
@@ -111,7 +102,8 @@ TEST(MotionMatrixTest, StandardisationIsInvertible) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   const dataset::Sequence& sequence = dataset.sequences[2];
   const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
-  const motion::Poses world = FollowerToWorld(dataset.skeleton, sequence, pair.follower);
+  const motion::Poses world =
+      BaselineStandardisation(dataset.skeleton, sequence).Invert(FromRows(pair.follower));
   ASSERT_EQ(world.frame_count(), sequence.pair.follower.frame_count());
   for (int t = 0; t < world.frame_count(); ++t) {
     for (int j = 0; j < world.joint_count(); ++j) {

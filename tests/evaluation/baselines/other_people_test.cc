@@ -58,10 +58,10 @@ TEST(OtherPeopleTest, AnswersAreCapturedFollowersOfTheClassWhereTheyStoodToTheir
   }
   std::vector<int> drawn;
   for (uint64_t seed = 0; seed < 20; ++seed) {
-    const auto answers = AnswerWithOtherPeople(dataset, train, test, seed);
+    const auto answers = AnswerWithOtherPeople(dataset, {train, test}, seed);
     ASSERT_TRUE(answers.ok());
     for (size_t i = 0; i < test.size(); ++i) {
-      const int source = Source(dataset, train, test[i], (*answers)[i]);
+      const int source = Source(dataset, train, test[i], (*answers)[i].follower);
       ASSERT_GE(source, 0);
       EXPECT_EQ(dataset.sequences[static_cast<size_t>(source)].interaction_class,
                 dataset.sequences[static_cast<size_t>(test[i])].interaction_class);
@@ -81,16 +81,16 @@ TEST(OtherPeopleTest, LongerClipsAreCutAndShorterOnesStretchedWhereNoneIsLongEno
   const motion::Clip whole = asked.leader;
   const int frames = whole.frame_count();
   asked.leader.poses.Resize(frames / 2);
-  auto answers = AnswerWithOtherPeople(dataset, {same[1]}, {same[0]}, 0);
+  auto answers = AnswerWithOtherPeople(dataset, {{same[1]}, {same[0]}}, 0);
   ASSERT_TRUE(answers.ok());
-  EXPECT_TRUE(Alike(Seen(dataset, same[0], answers->front()),
+  EXPECT_TRUE(Alike(Seen(dataset, same[0], answers->front().follower),
                     Seen(dataset, same[1], other.follower.poses).topRows(frames / 2)));
   asked.leader = whole;
   other.leader.poses.Resize(frames / 2);
   other.follower.poses.Resize(frames / 2);
-  answers = AnswerWithOtherPeople(dataset, {same[1]}, {same[0]}, 0);
+  answers = AnswerWithOtherPeople(dataset, {{same[1]}, {same[0]}}, 0);
   ASSERT_TRUE(answers.ok());
-  const Rows seen = Seen(dataset, same[0], answers->front());
+  const Rows seen = Seen(dataset, same[0], answers->front().follower);
   ASSERT_EQ(seen.rows(), frames);
   EXPECT_TRUE(
       Alike(seen.bottomRows(1), Seen(dataset, same[1], other.follower.poses).bottomRows(1)));

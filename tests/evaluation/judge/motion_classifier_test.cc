@@ -46,7 +46,7 @@ TEST(MotionClassifier, ClassifiesAnUnseenSubject) {
   const MotionClassifier judge = Trained(dataset, Small());
   const std::vector<metrics::ScoredMotion> test = Followers(dataset, true);
   ASSERT_THAT(test, SizeIs(2 * kPairsAClass / 3));
-  const std::vector<std::vector<float>> probabilities = judge.Probabilities(dataset, test);
+  const std::vector<std::vector<float>> probabilities = judge.Judge(dataset, test).probabilities;
   ASSERT_THAT(probabilities, SizeIs(test.size()));
   int right = 0;
   for (size_t i = 0; i < test.size(); ++i) {
@@ -62,13 +62,14 @@ TEST(MotionClassifier, IsDeterministic) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   MotionClassifierOptions options = Small();
   options.epochs = 2;
-  const MotionClassifier a = Trained(dataset, options), b = Trained(dataset, options);
-  EXPECT_THAT(a.hash(), SizeIs(64));
-  EXPECT_EQ(a.hash(), b.hash());
-  EXPECT_EQ(a.Probabilities(dataset, Followers(dataset, true)),
-            b.Probabilities(dataset, Followers(dataset, true)));
+  const auto features = [&] {
+    return Trained(dataset, options).Judge(dataset, Followers(dataset, true)).features;
+  };
+  const metrics::FeatureSet first = features();
+  EXPECT_THAT(first.front(), SizeIs(2 * options.hidden));
+  EXPECT_EQ(features(), first);
   options.seed = 1;
-  EXPECT_NE(Trained(dataset, options).hash(), a.hash());
+  EXPECT_NE(features(), first);
 }
 
 TEST(MotionClassifier, IsInvariantToThePlaceInTheWorld) {
@@ -80,8 +81,8 @@ TEST(MotionClassifier, IsInvariantToThePlaceInTheWorld) {
     }
   }
   const MotionClassifier judge = Trained(dataset, Small());
-  const auto here = judge.Probabilities(dataset, Followers(dataset, true));
-  const auto there = judge.Probabilities(moved, Followers(moved, true));
+  const auto here = judge.Judge(dataset, Followers(dataset, true)).probabilities;
+  const auto there = judge.Judge(moved, Followers(moved, true)).probabilities;
   for (size_t i = 0; i < here.size(); ++i) EXPECT_NEAR(here[i][0], there[i][0], 1e-3) << i;
 }
 
@@ -113,8 +114,8 @@ TEST(MotionClassifier, SeesTheLeaderOnlyIfAsked) {
   for (const Sees sees : {Sees::kFollower, Sees::kBoth}) {
     options.sees = sees;
     const MotionClassifier judge = Trained(dataset, options);
-    const bool same = judge.Probabilities(dataset, Followers(dataset, true)) ==
-                      judge.Probabilities(raised, Followers(raised, true));
+    const bool same = judge.Judge(dataset, Followers(dataset, true)).probabilities ==
+                      judge.Judge(raised, Followers(raised, true)).probabilities;
     EXPECT_EQ(same, sees == Sees::kFollower);
   }
 }

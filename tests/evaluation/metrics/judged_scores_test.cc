@@ -17,27 +17,15 @@ using ::testing::NanSensitiveDoubleEq;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-TEST(ConfusionTest, CountsTheLikeliestClassOfEachMotion) {
-  Confusion confusion(3);
-  confusion.AddLikeliest({0, 0, 1, 1, 1}, {{0.9f, 0.1f, 0},
-                                           {0.2f, 0.8f, 0},
-                                           {0.5f, 0.5f, 0},  // the first of equals
-                                           {0, 1, 0},
-                                           {0, 0.9f, 0.1f}});
-  EXPECT_EQ(confusion.count(0, 0), 1);
-  EXPECT_EQ(confusion.count(0, 1), 1);
-  EXPECT_EQ(confusion.count(1, 0), 1);
-  EXPECT_THAT(confusion.ClassAccuracies(),
+TEST(ClassAccuraciesTest, CountTheLikeliestClassOfEachMotion) {
+  EXPECT_THAT(ClassAccuracies({0, 0, 1, 1, 1},
+                              {{0.9f, 0.1f, 0},
+                               {0.2f, 0.8f, 0},
+                               {0.5f, 0.5f, 0},  // the first of equals
+                               {0, 1, 0},
+                               {0, 0.9f, 0.1f}},
+                              3),
               ElementsAre(0.5, DoubleEq(2.0 / 3), NanSensitiveDoubleEq(kNone)));
-  EXPECT_DOUBLE_EQ(confusion.Accuracy(), 0.6);
-  EXPECT_DOUBLE_EQ(confusion.MeanClassAccuracy(), 3.5 / 6);
-  EXPECT_TRUE(std::isnan(Confusion(2).Accuracy()));
-}
-
-double Frechet(const FeatureSet& a, const FeatureSet& b) {
-  const absl::StatusOr<double> distance = FrechetDistance(a, b);
-  EXPECT_THAT(distance, IsOk());
-  return distance.value_or(-1);
 }
 
 FeatureSet RandomSet(int samples, int width, unsigned seed) {
@@ -80,37 +68,27 @@ double TextbookFrechet(const FeatureSet& a, const FeatureSet& b) {
 
 TEST(FrechetDistanceTest, EqualsTheTextbookForm) {
   const FeatureSet a = RandomSet(40, 6, 1), b = RandomSet(30, 6, 2);
-  EXPECT_NEAR(Frechet(a, b), TextbookFrechet(a, b), 1e-8);
-  EXPECT_NEAR(Frechet(a, b), Frechet(b, a), 1e-9);
+  EXPECT_NEAR(FrechetDistance(a, b), TextbookFrechet(a, b), 1e-8);
+  EXPECT_NEAR(FrechetDistance(a, b), FrechetDistance(b, a), 1e-9);
 }
 
 TEST(FrechetDistanceTest, FewerSamplesThanFeaturesIsExact) {
   const FeatureSet a = RandomSet(5, 40, 3), b = RandomSet(7, 40, 4);
-  EXPECT_NEAR(Frechet(a, b), TextbookFrechet(a, b), 1e-3);
-  EXPECT_NEAR(Frechet(a, a), 0, 1e-6);
+  EXPECT_NEAR(FrechetDistance(a, b), TextbookFrechet(a, b), 1e-3);
+  EXPECT_NEAR(FrechetDistance(a, a), 0, 1e-6);
   // Many against few: one factor is reduced, the other is not.
   const FeatureSet many = RandomSet(60, 40, 5);
-  EXPECT_NEAR(Frechet(many, a), TextbookFrechet(many, a), 1e-3);
+  EXPECT_NEAR(FrechetDistance(many, a), TextbookFrechet(many, a), 1e-3);
   // Without spread, sets differ by their means.
-  EXPECT_NEAR(Frechet(FeatureSet(3, {1, 2, 2}), FeatureSet(4, {0, 0, 0})), 9, 1e-9);
-}
-
-TEST(FrechetDistanceTest, InvalidFeatureSetsAreRejected) {
-  const FeatureSet good = {{1, 2}, {3, 4}};
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const FeatureSet& bad : {FeatureSet{}, FeatureSet{{1, 2}}, FeatureSet{{1, 2}, {3, nan}}}) {
-    EXPECT_EQ(FrechetDistance(bad, good).status().code(), absl::StatusCode::kInvalidArgument);
-    EXPECT_EQ(FrechetDistance(good, bad).status().code(), absl::StatusCode::kInvalidArgument);
-  }
+  EXPECT_NEAR(FrechetDistance(FeatureSet(3, {1, 2, 2}), FeatureSet(4, {0, 0, 0})), 9, 1e-9);
 }
 
 TEST(NeighbourAccuracyTest, CountsSamplesWhoseNearestIsOfTheirClass) {
   // 0 and 1 are each other's nearest, 5 is nearest to 1, and 9 to 5.
   const FeatureSet line = {{0, 3}, {1, 3}, {5, 3}, {9, 3}};
-  EXPECT_EQ(*NeighbourAccuracy(line, {0, 0, 1, 1}), 0.75);
-  EXPECT_EQ(*NeighbourAccuracy(line, {0, 1, 0, 1}), 0.0);
-  EXPECT_THAT(NeighbourAccuracy({{0}}, {0}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("at least 2 vectors, got 1")));
+  EXPECT_EQ(NeighbourAccuracy(line, {0, 0, 1, 1}), 0.75);
+  EXPECT_EQ(NeighbourAccuracy(line, {0, 1, 0, 1}), 0.0);
+  EXPECT_TRUE(std::isnan(NeighbourAccuracy({{0}}, {0})));
 }
 
 TEST(AccuracyByClass, PoolsTheFolds) {
@@ -131,8 +109,7 @@ TEST(FrechetByClass, AveragesTheFoldsThatHaveTwoMotionsOnBothSides) {
   const JudgedFold one = {{0}, {{1, 0}}, {{5, 5}}};
   const auto distances =
       FrechetByClass({Fold(3, 1), Fold(1, 2), Fold(3, 1)}, {Fold(0, 1), Fold(0, 2), one}, 2);
-  ASSERT_THAT(distances, IsOk());
-  EXPECT_THAT(*distances,
+  EXPECT_THAT(distances,
               ElementsAre(DoubleNear((9.0 + 1.0) / 2, 1e-6), NanSensitiveDoubleEq(kNone)));
 }
 

@@ -39,7 +39,6 @@ TEST(PlausibleCommandTest, MeasuresStillnessWithoutAndWithEachClassInClipsAndLiv
   const test::TemporaryFolder leaders;
   WriteWalker(leaders / "walker.json");
   const auto section = test::RunForSection(
-      AddPlausibleCommand,
       {"plausible", "--leaders", leaders.path().string(), "--seconds", "4", "--embedded"});
   ASSERT_THAT(section, IsOk());
   const nlohmann::json& figures = section->at("tables").at(0);
@@ -64,8 +63,7 @@ TEST(PlausibleCommandTest, MeasuresEachAnswerAndTheNetworksOwn) {
   const test::TemporaryFolder leaders;
   WriteWalker(leaders / "walker.json");
   const auto measure = [&](const std::string& flag) {
-    return test::RunForSection(AddPlausibleCommand,
-                               {"plausible", "--leaders", leaders.path().string(), "--seconds", "4",
+    return test::RunForSection({"plausible", "--leaders", leaders.path().string(), "--seconds", "4",
                                 "--embedded", "--each", flag});
   };
   const auto served = measure("--as-served"), own = measure("--own");

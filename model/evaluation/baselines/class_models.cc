@@ -1,11 +1,11 @@
+#include "model/evaluation/baselines/class_models.h"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
-
-#include "model/evaluation/baselines/class_models.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -17,25 +17,8 @@ constexpr double kTimeWeight = 1.0;
 // Weight of one metre of the root's path, which moves all joints.
 constexpr double kWayWeight = 2.0;
 
-// A matching's cost so far and its number of matched rows.
-struct Path {
-  double cost = std::numeric_limits<double>::infinity();
-  int length = 0;
-};
-
-const Path& Cheapest(const Path& a, const Path& b, const Path& c) {
-  const Path& ab = a.cost <= b.cost ? a : b;
-  return ab.cost <= c.cost ? ab : c;
-}
-
 // Components with less than this share of the strongest one's variance are rounding.
 constexpr double kNoVariance = 1e-10;
-
-Rows Stack(const std::vector<StandardPair>& pairs, Rows StandardPair::*part) {
-  std::vector<Rows> parts;
-  for (const StandardPair& pair : pairs) parts.push_back(pair.*part);
-  return StackRows(parts);
-}
 
 Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world) {
   const Rows pose = ToRows(frame.Apply(world));
@@ -126,11 +109,6 @@ StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
   return pair;
 }
 
-motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
-                              const Rows& follower) {
-  return BaselineStandardisation(skeleton, sequence).Invert(FromRows(follower));
-}
-
 Rows StretchTo(const Rows& motion, Eigen::Index frames) {
   Rows out(frames, motion.cols());
   const double last = static_cast<double>(motion.rows() - 1);
@@ -143,23 +121,6 @@ Rows StretchTo(const Rows& motion, Eigen::Index frames) {
                  (at - static_cast<double>(whole)) * (motion.row(next) - motion.row(whole));
   }
   return out;
-}
-
-double TimeWarpedDistance(const Rows& a, const Rows& b) {
-  const size_t width = static_cast<size_t>(b.rows());
-  // One row of the table at a time; index 0 stands for "before the first row of b".
-  std::vector<Path> previous(width + 1), current(width + 1);
-  previous[0].cost = 0;
-  for (Eigen::Index i = 0; i < a.rows(); ++i) {
-    current[0] = Path{};
-    for (size_t j = 1; j <= width; ++j) {
-      const Path& from = Cheapest(previous[j - 1], previous[j], current[j - 1]);
-      const double distance = (a.row(i) - b.row(static_cast<Eigen::Index>(j) - 1)).norm();
-      current[j] = {from.cost + distance, from.length + 1};
-    }
-    std::swap(previous, current);
-  }
-  return previous[width].cost / previous[width].length;
 }
 
 Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b) {
@@ -198,10 +159,10 @@ Rows StackRows(const std::vector<Rows>& parts) {
   return stacked;
 }
 
-Rows StackCues(const std::vector<StandardPair>& pairs) { return Stack(pairs, &StandardPair::cues); }
-
-Rows StackFollowers(const std::vector<StandardPair>& pairs) {
-  return Stack(pairs, &StandardPair::follower);
+Rows Stack(const std::vector<StandardPair>& pairs, Rows StandardPair::*part) {
+  std::vector<Rows> parts;
+  for (const StandardPair& pair : pairs) parts.push_back(pair.*part);
+  return StackRows(parts);
 }
 
 std::vector<int> NearestCentres(const Rows& centres, const Rows& rows) {

@@ -1,4 +1,4 @@
-#include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/program/experiment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,13 +9,12 @@
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
 
-namespace duet::evaluation::experiments {
+namespace duet::evaluation::program {
 namespace {
 
 using test::MadeUpPairs;
 
-// Stands still at a height that is the window's seed, at a distance that is its variety, and to the
-// side that its direction points to.
+// Stands still at a height that is the window's seed and at a distance that is its variety.
 class SeedTeller : public engine::Synthesizer {
  public:
   explicit SeedTeller(const dataset::Dataset& dataset) {
@@ -33,8 +32,8 @@ class SeedTeller : public engine::Synthesizer {
     for (const engine::SynthesisWindow* window : windows) {
       motion::Poses follower = window->leader;
       for (motion::Vec3& p : follower.all()) {
-        p = {window->partner_direction.value_or(motion::Vec3{}).x,
-             static_cast<float>(window->options.sampling.seed), window->options.sampling.variety};
+        p = {0, static_cast<float>(window->options.sampling.seed),
+             window->options.sampling.variety};
       }
       results.emplace_back(std::move(follower));
     }
@@ -48,7 +47,7 @@ class SeedTeller : public engine::Synthesizer {
 TEST(SampledAnswersTest, EveryAnswerHasASeedOfItsOwn) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   const SeedTeller model(dataset);
-  const auto answers = AnswerWithSamples(model, dataset, {4, 1}, StartGiven::kNone, {5, 0.5f, 7});
+  const auto answers = AnswerWithSamples(model, dataset, {4, 1}, {"none", 5, 0.5f, 7});
   ASSERT_TRUE(answers.ok()) << answers.status();
   ASSERT_THAT(*answers, SizeIs(5));
   std::set<float> seeds;
@@ -64,24 +63,11 @@ TEST(SampledAnswersTest, EveryAnswerHasASeedOfItsOwn) {
   EXPECT_THAT(seeds, SizeIs(10));
 }
 
-TEST(SampledAnswersTest, DirectionIsOmittedOnRequest) {
-  dataset::Dataset dataset = MadeUpPairs(1);
-  dataset.sequences[0].partner_direction = motion::Vec3{1, 0, 0};
-  const SeedTeller model(dataset);
-  AskedSamples asked = {1, 1, 0};
-  const auto told = AnswerWithSamples(model, dataset, {0}, StartGiven::kNone, asked);
-  asked.tell_direction = false;
-  const auto untold = AnswerWithSamples(model, dataset, {0}, StartGiven::kNone, asked);
-  ASSERT_TRUE(told.ok() && untold.ok());
-  EXPECT_EQ(told->front().front().follower.at(0, 0).x, 1);
-  EXPECT_NE(untold->front().front().follower.at(0, 0).x, 1);
-}
-
 TEST(SampledAnswersTest, AModelThatDoesNotSampleAnswersOnce) {
   const dataset::Dataset dataset = MadeUpPairs(1);
   SeedTeller model(dataset);
   model.description().samples = false;
-  const auto answers = AnswerWithSamples(model, dataset, {0, 1}, StartGiven::kNone, {});
+  const auto answers = AnswerWithSamples(model, dataset, {0, 1}, {"none", 3});
   ASSERT_TRUE(answers.ok()) << answers.status();
   EXPECT_THAT(*answers, SizeIs(1));
 }
@@ -90,7 +76,7 @@ TEST(SampledAnswersTest, UnsupportedStartIsRejected) {
   const dataset::Dataset dataset = MadeUpPairs(1);
   SeedTeller model(dataset);
   model.description().accepts_follower_start = false;
-  EXPECT_THAT(AnswerWithSamples(model, dataset, {0}, StartGiven::kPose, {}).status(),
+  EXPECT_THAT(AnswerWithSamples(model, dataset, {0}, {"pose"}).status(),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("follower start")));
 }
 
@@ -119,9 +105,9 @@ TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
       {1, 0, 0, 0, 0, 0}, {0, 0.5f, 0, 0, 0, 0}, {0, 0, 0, 0, 0, -1}};
   std::vector<LabelledLeader> leaders;
   for (size_t i = 0; i < labels.size(); ++i) {
-    leaders.push_back({sequences[i], engine::LabelTrack(labels[i])});
+    leaders.push_back({sequences[i], labels[i]});
   }
-  const auto followers = SynthesizeSequences(model, leaders, StartGiven::kNone);
+  const auto followers = SynthesizeSequences(model, leaders, {});
   ASSERT_TRUE(followers.ok()) << followers.status();
   EXPECT_THAT(batches, ElementsAre(3, 1));
   ASSERT_THAT(*followers, SizeIs(3));
@@ -144,13 +130,62 @@ TEST(SynthesizeSequences, PassesAFailureOn) {
     return window.labels[1] > 0 ? absl::InternalError("no") : absl::OkStatus();
   };
   const auto labels = [](float first, float second) {
-    return engine::LabelTrack(std::vector<float>{first, second, 0, 0, 0, 0});
+    return std::vector<float>{first, second, 0, 0, 0, 0};
   };
   const std::vector<LabelledLeader> leaders = {{&dataset.sequences[0], labels(1, 0)},
                                                {&dataset.sequences[0], labels(0, 1)}};
-  EXPECT_TRUE(absl::IsInternal(SynthesizeSequences(model, leaders, StartGiven::kNone).status()));
-  EXPECT_TRUE(SynthesizeSequences(model, {leaders.data(), 1}, StartGiven::kNone).ok());
+  EXPECT_TRUE(absl::IsInternal(SynthesizeSequences(model, leaders, {}).status()));
+  EXPECT_TRUE(SynthesizeSequences(model, {leaders.data(), 1}, {}).ok());
+}
+
+TEST(LeaveOut, DefaultsToEverySubject) {
+  dataset::Dataset dataset = MadeUpPairs(3);
+  const auto subjects = [&dataset](const std::vector<std::string>& asked) {
+    std::vector<std::string> names;
+    const absl::StatusOr<std::vector<Fold>> folds = LeaveOut(dataset, asked);
+    for (const Fold& fold : *folds) names.push_back(fold.subject);
+    return names;
+  };
+  EXPECT_THAT(subjects({"b"}), ElementsAre("b"));
+  EXPECT_THAT(subjects({}), ElementsAre("a", "b", "c"));
+  for (dataset::Sequence& sequence : dataset.sequences) sequence.subjects.clear();
+  EXPECT_TRUE(absl::IsInvalidArgument(LeaveOut(dataset, {}).status()));
+}
+
+TEST(ParseRuns, TakesAFolderWithOrWithoutAName) {
+  EXPECT_EQ(ParseRuns("ours=runs/x")->name, "ours");
+  EXPECT_EQ(ParseRuns("ours=runs/x")->folder, "runs/x");
+  EXPECT_EQ(ParseRuns("runs/default")->name, "default");
+  EXPECT_EQ(ParseRuns("runs/default/")->name, "default");
+  EXPECT_EQ(ParseRuns("runs/default/")->folder, "runs/default/");
+  for (const char* bad : {"", "=runs", "ours="}) {
+    const absl::Status status = ParseRuns(bad).status();
+    EXPECT_TRUE(absl::IsInvalidArgument(status)) << bad << ": " << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("NAME=DIR"));
+  }
+}
+
+TEST(RecordedCommandTest, HasPlaceholdersForFoldersAndOnlyFlagsThatWereGiven) {
+  const struct {
+    std::vector<std::string> words;
+    const char* recorded;
+  } kCases[] = {{{"--data", "/home/me/sbu", "--checkpoint", "/models/sbu/2"},
+                 "--data FOLDER --checkpoint FOLDER"},
+                {{"--runs", "ours=/a/b", "--data", "x", "--runs", "/a/theirs/"},
+                 "--data FOLDER --runs ours=RUNS --runs RUNS"},
+                {{"--subjects", "s01,s02", "--data", "x", "--as-served", "--seed", "7"},
+                 "--data FOLDER --subjects s01,s02 --as-served --seed 7"}};
+  for (const auto& c : kCases) {
+    CLI::App app;
+    CLI::App* command = app.add_subcommand("measure", "");
+    ExperimentFlags flags;
+    AddAnswersFlags(&flags, command);
+    std::vector<std::string> words(c.words.rbegin(), c.words.rend());  // in reverse, for CLI11
+    words.push_back("measure");
+    app.parse(words);
+    EXPECT_EQ(RecordedCommand(*command), std::string("duet-eval measure ") + c.recorded);
+  }
 }
 
 }  // namespace
-}  // namespace duet::evaluation::experiments
+}  // namespace duet::evaluation::program

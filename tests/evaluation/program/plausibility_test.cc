@@ -1,12 +1,11 @@
-#include "model/evaluation/experiments/plausibility.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "gtest/gtest.h"
 #include "model/authoring/made_leaders.h"
+#include "model/evaluation/program/measures.h"
 
-namespace duet::evaluation::experiments {
+namespace duet::evaluation::program {
 namespace {
 
 using motion::Vec3;
@@ -34,32 +33,23 @@ motion::Poses ReachingOut(int joint, float ahead, float height) {
   return poses;
 }
 
-PairFigures Measured(const motion::Poses& leader, const motion::Poses& follower,
-                     const ClassContacts& contacts = {}) {
-  return Plausibility(motion::SbuSkeleton()).Measure(leader, follower, kRate, contacts);
-}
-
-double Figure(const PairFigures& figures, const std::string& name) {
-  const std::vector<PairFigure> all = Plausibility::Figures();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const PairFigure& figure) { return figure.name == name; });
-  EXPECT_NE(found, all.end()) << name;
-  return figures.values[static_cast<size_t>(found - all.begin())];
-}
-
 double Figure(const motion::Poses& leader, const motion::Poses& follower, const std::string& name) {
-  return Figure(Measured(leader, follower), name);
+  const std::vector<std::string>& all = PlausibleFigures();
+  const std::vector<double> figures =
+      MeasurePlausibility(motion::SbuSkeleton(), leader, follower, kRate);
+  EXPECT_EQ(figures.size(), all.size());
+  const auto found = std::find(all.begin(), all.end(), name);
+  EXPECT_NE(found, all.end()) << name;
+  return figures[static_cast<size_t>(found - all.begin())];
 }
 
 TEST(PlausibilityTest, AStandingPairHasNoFaults) {
-  const PairFigures figures = Measured(Person(), Partner(1.2f));
-  EXPECT_EQ(figures.values.size(), Plausibility::Figures().size());
+  const motion::Poses follower = Partner(1.2f);
   for (const char* name : {"twisted clips", "both feet", "heads", "trunks", "turns"}) {
-    EXPECT_EQ(Figure(figures, name), 0) << name;
+    EXPECT_EQ(Figure(Person(), follower, name), 0) << name;
   }
-  EXPECT_NEAR(Figure(figures, "distance"), 1.2, 0.1);
-  EXPECT_TRUE(std::isnan(Figure(figures, "hands")));
-  for (const double fault : figures.faults) EXPECT_EQ(fault, 0);
+  EXPECT_NEAR(Figure(Person(), follower, "distance"), 1.2, 0.1);
+  EXPECT_TRUE(std::isnan(Figure(Person(), follower, "hands")));
 }
 
 TEST(PlausibilityTest, AFollowerWhoTurnsAway) {
@@ -82,37 +72,15 @@ TEST(PlausibilityTest, HandsAreMeasuredWhileOneIsReachedOut) {
   const double far = Figure(leader, Partner(1.4f), "hands");
   EXPECT_GT(near, 0.2);
   EXPECT_GT(far, near + 0.2);
-  EXPECT_GT(Measured(leader, Partner(1.4f), {true}).faults[9], 0.9);
-  EXPECT_EQ(Measured(leader, Partner(1.4f), {false}).faults[9], 0);
 }
 
-TEST(PlausibilityTest, AJointThatSnapsIsFoundInItsFrame) {
+TEST(PlausibilityTest, AJointThatSnapsIsFound) {
   motion::Poses follower = Partner(1.2f);
   for (int t = 30; t < follower.frame_count(); ++t) {
     follower.at(t, kLeftHand) = follower.at(t, kLeftElbow) * 2 - follower.at(t, kLeftHand);
   }
-  const PairFigures figures = Measured(Person(), follower);
-  EXPECT_EQ(Figure(figures, "turns"), 1);
-  EXPECT_GT(figures.faults[30], 4.9);
-  EXPECT_EQ(figures.faults[28], 0);
-}
-
-TEST(PlausibilityTest, CombinesMeansAndLargest) {
-  PairFigures a, b;
-  a.values.assign(Plausibility::Figures().size(), 1);
-  b.values.assign(Plausibility::Figures().size(), 4);
-  const PairFigures combined{Combine({a, b}), {}};
-  EXPECT_EQ(Figure(combined, "speed"), 2.5);
-  EXPECT_EQ(Figure(combined, "hips off"), 4);
-}
-
-TEST(FindWorstPartTest, FindsThePartWithTheMostFaults) {
-  const WorstPart worst = FindWorstPart({0, 1, 0, 0, 2, 2, 0}, 3);
-  EXPECT_EQ(worst.first, 3);
-  EXPECT_EQ(worst.faults, 4);
-  EXPECT_EQ(FindWorstPart({1, 1}, 5).first, 0);
-  EXPECT_EQ(FindWorstPart({1, 1}, 5).faults, 2);
+  EXPECT_EQ(Figure(Person(), follower, "turns"), 1);
 }
 
 }  // namespace
-}  // namespace duet::evaluation::experiments
+}  // namespace duet::evaluation::program

@@ -1,20 +1,16 @@
-#include "model/evaluation/experiments/mixes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <map>
 
-#include "absl/strings/str_cat.h"
 #include "absl/types/span.h"
 #include "model/base/angle.h"
 #include "model/base/statistics.h"
-#include "model/evaluation/experiments/estimate.h"
+#include "model/evaluation/program/measures.h"
 #include "model/motion/filter.h"
 
-namespace duet::evaluation::experiments {
+namespace duet::evaluation::program {
 namespace {
 
 using motion::Poses;
@@ -70,9 +66,11 @@ const std::vector<std::string>& MeetingGeometry::Features() {
   return *kFeatures;
 }
 
-std::vector<double> MeetingGeometry::Measure(const Poses& leader, const Poses& follower, Vec3 away,
-                                             double rate) const {
-  const Poses partner = motion::WithoutNoise(leader, rate);
+std::vector<double> MeetingGeometry::Measure(const dataset::Sequence& sequence,
+                                             const Poses& follower) const {
+  const Vec3 away = AwayFromLeader(sequence, skeleton_.root);
+  const double rate = sequence.pair.leader.frame_rate_hz;
+  const Poses partner = motion::WithoutNoise(sequence.pair.leader.poses, rate);
   const Poses poses = motion::WithoutNoise(follower, rate);
   Series series;
   for (int t = 0; t < poses.frame_count(); ++t) {
@@ -155,10 +153,7 @@ ClassGeometry MeasureClasses(const MeetingGeometry& geometry, const dataset::Dat
                                                        std::vector<std::vector<double>>(features));
   for (const int index : sequences) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    const motion::ClipPair& pair = sequence.pair;
-    const std::vector<double> measured = geometry.Measure(
-        pair.leader.poses, pair.follower.poses, AwayFromLeader(sequence, dataset.skeleton.root),
-        pair.leader.frame_rate_hz);
+    const std::vector<double> measured = geometry.Measure(sequence, sequence.pair.follower.poses);
     for (size_t f = 0; f < features; ++f) {
       values[static_cast<size_t>(sequence.interaction_class)][f].push_back(measured[f]);
     }
@@ -188,8 +183,6 @@ int Likeliest(const std::vector<float>& probabilities) {
   return static_cast<int>(std::max_element(probabilities.begin(), probabilities.end()) -
                           probabilities.begin());
 }
-
-double AsNumber(bool yes) { return yes ? 1 : 0; }
 
 double DistanceOf(const motion::Poses& a, const motion::Poses& b) {
   double sum = 0;
@@ -240,65 +233,23 @@ double KeptOf(const MixedAnswer& answer, bool is_own, const ClassGeometry& captu
 
 struct MixFigure {
   const char* name;
-  std::function<double(const MixedAnswer&, const Kept&)> of;
+  double (*of)(const MixedAnswer& answer, const Kept& kept);
 };
 
-std::vector<MixFigure> MixFigures() {
-  return {{"weaker ingredient", [](auto&, const Kept& kept) { return kept.weaker(); }},
-          {"both above half", [](auto&, const Kept& kept) { return kept.both(); }},
-          {"own ingredient", [](auto&, const Kept& kept) { return kept.own; }},
-          {"other ingredient", [](auto&, const Kept& kept) { return kept.other; }},
-          {"third class",
-           [](const MixedAnswer& answer, auto&) {
-             const int likeliest = Likeliest(answer.probabilities);
-             return AsNumber(likeliest != answer.own && likeliest != answer.other);
-           }},
-          {"deviation from average", [](auto& a, auto&) { return a.deviation; }},
-          {"twisted", [](auto& a, auto&) { return a.twisted; }},
-          {"overlap", [](auto& a, auto&) { return a.overlapping; }},
-          {"skate", [](auto& a, auto&) { return a.skating; }},
-          {"move for a step of 0.1", [](auto& a, auto&) { return a.largest_move; }}};
-}
-
-std::vector<int> LeadersOf(const std::vector<MixedAnswer>& answers) {
-  std::vector<int> leaders;
-  for (const MixedAnswer& answer : answers) leaders.push_back(answer.leader);
-  return leaders;
-}
-
-double LargestOf(const std::vector<MixedAnswer>& answers) {
-  double largest = NAN;  // std::fmax ignores it
-  for (const MixedAnswer& answer : answers) largest = std::fmax(largest, answer.largest_move);
-  return largest;
-}
-
-// A row for each pair of classes of one variant.
-report::Table PairTable(const std::string& title, const std::vector<std::string>& classes,
-                        const MixVariant& variant, const std::vector<Kept>& kept) {
-  report::Table table = EstimateTable(absl::StrCat(title, ", ", variant.first, ", by pair"),
-                                      {"weaker", "both", "third", "deviation"});
-  std::map<std::pair<int, int>, std::vector<size_t>> rows;
-  for (size_t i = 0; i < variant.second.size(); ++i) {
-    rows[std::minmax(variant.second[i].own, variant.second[i].other)].push_back(i);
-  }
-  const std::vector<MixFigure> figures = MixFigures();
-  for (const auto& [pair, indices] : rows) {
-    std::vector<Estimate> estimates;
-    for (const size_t f : {0, 1, 4, 5}) {
-      std::vector<int> leaders;
-      std::vector<double> values;
-      for (const size_t i : indices) {
-        leaders.push_back(variant.second[i].leader);
-        values.push_back(figures[f].of(variant.second[i], kept[i]));
-      }
-      estimates.push_back(BootstrapMean(leaders, values));
-    }
-    AddEstimates(absl::StrCat(classes[static_cast<size_t>(pair.first)], " + ",
-                              classes[static_cast<size_t>(pair.second)]),
-                 estimates, &table);
-  }
-  return table;
-}
+constexpr MixFigure kMixFigures[] = {
+    {"weaker ingredient", [](auto&, const Kept& kept) { return kept.weaker(); }},
+    {"both above half", [](auto&, const Kept& kept) { return kept.both(); }},
+    {"own ingredient", [](auto&, const Kept& kept) { return kept.own; }},
+    {"other ingredient", [](auto&, const Kept& kept) { return kept.other; }},
+    {"third class",
+     [](const MixedAnswer& answer, auto&) {
+       const int likeliest = Likeliest(answer.probabilities);
+       return likeliest != answer.own && likeliest != answer.other ? 1.0 : 0.0;
+     }},
+    {"deviation from average", [](auto& a, auto&) { return a.deviation; }},
+    {"twisted", [](auto& a, auto&) { return a.twisted; }},
+    {"overlap", [](auto& a, auto&) { return a.overlapping; }},
+    {"skate", [](auto& a, auto&) { return a.skating; }}};
 
 }  // namespace
 
@@ -311,19 +262,11 @@ double Deviation(const motion::Poses& mixed, const motion::Poses& own, const mot
   return Ratio(DistanceOf(mixed, average), scale);
 }
 
-double LargestMove(const motion::Poses& before, const motion::Poses& after) {
-  double largest = 0;
-  for (size_t i = 0; i < before.all().size(); ++i) {
-    largest = std::max(largest, double{Distance(before.all()[i], after.all()[i])});
-  }
-  return largest;
-}
-
 double Kept::weaker() const {
   return std::isnan(own) || std::isnan(other) ? NAN : std::min(own, other);
 }
 
-double Kept::both() const { return std::isnan(weaker()) ? NAN : AsNumber(weaker() > 0.5); }
+double Kept::both() const { return std::isnan(weaker()) ? NAN : weaker() > 0.5 ? 1 : 0; }
 
 std::vector<Kept> MeasureKept(const std::vector<MixedAnswer>& answers,
                               const std::vector<ClassGeometry>& folds) {
@@ -338,109 +281,40 @@ std::vector<Kept> MeasureKept(const std::vector<MixedAnswer>& answers,
   return all;
 }
 
-std::vector<report::Table> MixTables(const std::string& title,
-                                     const std::vector<std::string>& classes,
-                                     const std::vector<ClassGeometry>& folds,
-                                     const std::vector<MixVariant>& variants) {
+report::Table MixTable(const std::string& title, const std::vector<ClassGeometry>& folds,
+                       const std::vector<MixVariant>& variants) {
   std::vector<std::string> names;
   std::vector<std::vector<Kept>> kept;
-  for (const MixVariant& variant : variants) {
-    names.push_back(variant.first);
-    kept.push_back(MeasureKept(variant.second, folds));
+  for (const auto& [name, answers] : variants) {
+    names.push_back(name);
+    kept.push_back(MeasureKept(answers, folds));
   }
-  std::vector<report::Table> tables = {EstimateTable(title, names)};
-  for (const MixFigure& figure : MixFigures()) {
-    std::vector<Estimate> estimates;
+  report::Table table = EstimateTable(title, names);
+  for (const MixFigure& figure : kMixFigures) {
+    report::TableRow row{figure.name, {}};
     for (size_t v = 0; v < variants.size(); ++v) {
       const std::vector<MixedAnswer>& answers = variants[v].second;
-      std::vector<double> values;
-      for (size_t i = 0; i < answers.size(); ++i) {
-        values.push_back(figure.of(answers[i], kept[v][i]));
-      }
-      estimates.push_back(BootstrapMean(LeadersOf(answers), values));
+      std::vector<int> leaders;
+      for (const MixedAnswer& answer : answers) leaders.push_back(answer.leader);
+      const auto mean = [&](const std::vector<size_t>& rows) {
+        std::vector<double> values;
+        for (const size_t i : rows) values.push_back(figure.of(answers[i], kept[v][i]));
+        return base::Mean(values);
+      };
+      AddEstimate(leaders, mean, &row);
     }
-    AddEstimates(figure.name, estimates, &tables.front());
+    table.rows.push_back(std::move(row));
   }
-  std::vector<Estimate> largest;
-  for (const MixVariant& variant : variants) {
-    largest.push_back({LargestOf(variant.second), NAN, NAN});
-  }
-  AddEstimates("largest of these moves", largest, &tables.front());
-  tables.front().notes = {
+  table.notes = {
       "Ingredients: how much of each class's own geometry the answer keeps, between the same "
       "leader's answer to the other class alone (0) and to this class alone (1). A class's own "
       "geometry: the features that are larger in its training captures than in the other class's, "
       "by more than their spread. Pairs in which a class has none do not count.",
       "Third class: share that the judge assigns to neither class. Deviation from average: 0 for "
       "the average of the two single answers, 1 for one of them. Twisted, overlap, skate: shares "
-      "of frames. Move for a step of 0.1: the largest move of any joint in any frame when a "
-      "weight moves by 0.1, metres, mean over the answers. One label: the own class alone.",
+      "of frames. One label: the own class alone.",
       "Low, high: 95 % interval by the bootstrap over leaders."};
-  for (size_t v = 0; v < variants.size(); ++v) {
-    tables.push_back(PairTable(title, classes, variants[v], kept[v]));
-  }
-  return tables;
-}
-
-namespace {
-
-// A ratio of sums over the answers with these rows.
-using AvoidFigure = std::function<double(const AvoidingAnswer&)>;
-Statistic RatioOf(const std::vector<AvoidingAnswer>& answers, AvoidFigure figure,
-                  AvoidFigure base) {
-  return [&answers, figure = std::move(figure),
-          base = std::move(base)](const std::vector<size_t>& rows) {
-    double sum = 0, base_sum = 0;
-    for (const size_t row : rows) {
-      sum += figure(answers[row]);
-      base_sum += base(answers[row]);
-    }
-    return Ratio(sum, base_sum);
-  };
-}
-
-struct NamedStatistic {
-  const char* name;
-  AvoidFigure figure, base;
-};
-
-std::vector<NamedStatistic> AvoidStatistics() {
-  const auto probability = [](const std::vector<float>& of, int c) {
-    return double{of[static_cast<size_t>(c)]};
-  };
-  const auto one = [](const AvoidingAnswer&) { return 1.0; };
-  return {
-      {"requested, of alone",
-       [=](const AvoidingAnswer& a) { return probability(a.avoiding, a.own); },
-       [=](const AvoidingAnswer& a) { return probability(a.alone, a.own); }},
-      {"recognised, of alone",
-       [](const AvoidingAnswer& a) { return AsNumber(Likeliest(a.avoiding) == a.own); },
-       [](const AvoidingAnswer& a) { return AsNumber(Likeliest(a.alone) == a.own); }},
-      {"recognised alone",
-       [](const AvoidingAnswer& a) { return AsNumber(Likeliest(a.alone) == a.own); }, one},
-      {"avoided", [=](const AvoidingAnswer& a) { return probability(a.avoiding, a.avoided); }, one},
-      {"avoided, alone", [=](const AvoidingAnswer& a) { return probability(a.alone, a.avoided); },
-       one},
-      {"distance moved", [](const AvoidingAnswer& a) { return std::abs(a.moved); }, one},
-      {"farther", [](const AvoidingAnswer& a) { return a.moved; }, one}};
-}
-
-}  // namespace
-
-report::Table AvoidTable(const std::string& title, const std::vector<AvoidingAnswer>& answers) {
-  report::Table table = EstimateTable(title, {"own 1, other -1"});
-  std::vector<int> leaders;
-  for (const AvoidingAnswer& answer : answers) leaders.push_back(answer.leader);
-  for (const NamedStatistic& named : AvoidStatistics()) {
-    AddEstimates(named.name, {Bootstrap(leaders, RatioOf(answers, named.figure, named.base))},
-                 &table);
-  }
-  table.notes = {
-      "Requested, avoided: the judge's probability of the own class and of the class at -1; "
-      "recognised: share of answers whose likeliest class is the own one; of alone: as a ratio to "
-      "the own class at 1 by itself. Distance moved: by how much the mean distance of the roots "
-      "differs from that answer's, metres; farther: with its sign."};
   return table;
 }
 
-}  // namespace duet::evaluation::experiments
+}  // namespace duet::evaluation::program

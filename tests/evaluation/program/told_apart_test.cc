@@ -1,10 +1,9 @@
-#include "model/evaluation/experiments/told_apart.h"
-
 #include <gtest/gtest.h>
 
+#include "model/evaluation/program/measures.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
-namespace duet::evaluation::experiments {
+namespace duet::evaluation::program {
 namespace {
 
 using test::MadeUpPairs;
@@ -68,4 +67,4 @@ TEST(ToldApartTest, NoiseDoesNotDistinguishAnswers) {
 }
 
 }  // namespace
-}  // namespace duet::evaluation::experiments
+}  // namespace duet::evaluation::program

@@ -1,4 +1,4 @@
-#include "model/evaluation/experiments/latent.h"
+#include "model/evaluation/judge/latent.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "tests/support/matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet::evaluation::experiments {
+namespace duet::evaluation::judge {
 namespace {
 
 using test::FilledCheckpoint;
@@ -37,9 +37,9 @@ double Distance(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 metrics::FeatureSet Features(const checkpoint::Checkpoint& model, const dataset::Dataset& dataset,
-                             const std::vector<int>& sequences,
-                             LatentLabels labels = LatentLabels::kOwnClass) {
-  absl::StatusOr<metrics::FeatureSet> features = LatentFeatures(model, dataset, sequences, labels);
+                             const std::vector<int>& sequences, bool labelled = true) {
+  absl::StatusOr<metrics::FeatureSet> features =
+      LatentFeatures(model, dataset, sequences, labelled);
   EXPECT_THAT(features, IsOk());
   return features.ok() ? *std::move(features) : metrics::FeatureSet{};
 }
@@ -62,21 +62,21 @@ TEST(LatentFeaturesTest, LabelsMatterToTheModelsThatReadThem) {
   const checkpoint::Checkpoint labelled = Model(dataset, checkpoint::GeneratorVariant::kPaper),
                                unlabelled =
                                    Model(dataset, checkpoint::GeneratorVariant::kUnlabelled);
-  EXPECT_GT(Distance(Features(labelled, dataset, {0})[0],
-                     Features(labelled, dataset, {0}, LatentLabels::kNone)[0]),
-            1e-4);
-  EXPECT_EQ(Distance(Features(unlabelled, dataset, {0})[0],
-                     Features(unlabelled, dataset, {0}, LatentLabels::kNone)[0]),
-            0);
+  EXPECT_GT(
+      Distance(Features(labelled, dataset, {0})[0], Features(labelled, dataset, {0}, false)[0]),
+      1e-4);
+  EXPECT_EQ(
+      Distance(Features(unlabelled, dataset, {0})[0], Features(unlabelled, dataset, {0}, false)[0]),
+      0);
 }
 
 TEST(LatentFeaturesTest, RefusesAModelOfOtherClasses) {
   dataset::Dataset dataset = MadeUpPairs(1);
   const checkpoint::Checkpoint model = Model(dataset, checkpoint::GeneratorVariant::kPaper);
   dataset.classes[1] = "duck";
-  EXPECT_THAT(LatentFeatures(model, dataset, {0}, LatentLabels::kOwnClass),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("give, duck")));
+  EXPECT_THAT(LatentFeatures(model, dataset, {0}, true),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("the data's classes")));
 }
 
 }  // namespace
-}  // namespace duet::evaluation::experiments
+}  // namespace duet::evaluation::judge

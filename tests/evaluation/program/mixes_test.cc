@@ -1,15 +1,15 @@
-#include "model/evaluation/experiments/mixes.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "model/authoring/made_leaders.h"
-#include "model/evaluation/experiments/estimate.h"
+#include "model/base/statistics.h"
+#include "model/evaluation/program/measures.h"
 #include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/matchers.h"
 
-namespace duet::evaluation::experiments {
+namespace duet::evaluation::program {
 namespace {
 
 using motion::Poses;
@@ -18,20 +18,24 @@ using motion::Vec3;
 constexpr double kRate = 15;
 constexpr Vec3 kAway = {0, 0, -1};
 
-TEST(EstimateTest, IntervalSpansTheLeadersAndNotTheirRows) {
-  const Estimate of_two = BootstrapMean({0, 1}, {1, 3});
-  EXPECT_EQ(of_two.value, 2);
-  EXPECT_EQ(of_two.low, 1);
-  EXPECT_EQ(of_two.high, 3);
-  const Estimate with_repeats = BootstrapMean({0, 0, 0, 1, 1, 1}, {1, 1, 1, 3, 3, 3});
-  EXPECT_EQ(with_repeats.low, of_two.low);
-  EXPECT_EQ(with_repeats.high, of_two.high);
+// The mean of the rows, and its interval.
+std::vector<double> Estimated(const std::vector<int>& leaders, const std::vector<double>& values) {
+  report::TableRow row;
+  AddEstimate(
+      leaders,
+      [&](const std::vector<size_t>& rows) {
+        std::vector<double> some;
+        for (const size_t i : rows) some.push_back(values[i]);
+        return base::Mean(some);
+      },
+      &row);
+  return row.values;
 }
 
-TEST(EstimateTest, MissingValuesDoNotCount) {
-  EXPECT_EQ(BootstrapMean({0, 1, 2}, {NAN, 5, 5}).value, 5);
-  EXPECT_TRUE(std::isnan(BootstrapMean({0, 1}, {NAN, NAN}).low));
-  EXPECT_TRUE(std::isnan(BootstrapMean({}, {}).value));
+TEST(EstimateTest, IntervalSpansTheLeadersAndNotTheirRows) {
+  EXPECT_THAT(Estimated({0, 1}, {1, 3}), ElementsAre(2, 1, 3));
+  EXPECT_THAT(Estimated({0, 0, 0, 1, 1, 1}, {1, 1, 1, 3, 3, 3}), ElementsAre(2, 1, 3));
+  EXPECT_THAT(Estimated({0, 1, 2}, {NAN, 5, 5}), ElementsAre(5, 5, 5));
 }
 
 Poses Leader() { return authoring::MakeLeader("idle", 2, kRate); }
@@ -50,8 +54,12 @@ double Feature(const std::string& name, const Poses& follower) {
   const std::vector<std::string>& names = MeetingGeometry::Features();
   const auto found = std::find(names.begin(), names.end(), name);
   EXPECT_NE(found, names.end()) << name;
+  dataset::Sequence sequence;
+  sequence.pair.leader.frame_rate_hz = kRate;
+  sequence.pair.leader.poses = Leader();
+  sequence.pair.follower.poses = Follower();
   return MeetingGeometry(motion::SbuSkeleton())
-      .Measure(Leader(), follower, kAway, kRate)[static_cast<size_t>(found - names.begin())];
+      .Measure(sequence, follower)[static_cast<size_t>(found - names.begin())];
 }
 
 TEST(MeetingGeometryTest, FeaturesGrowWithWhatTheyName) {
@@ -140,44 +148,25 @@ TEST(MixesTest, DeviationIsMeasuredFromTheAverage) {
   EXPECT_NEAR(Deviation(half, a, b), 0, 1e-5);
   EXPECT_NEAR(Deviation(a, a, b), 1, 1e-5);
   EXPECT_TRUE(std::isnan(Deviation(half, a, a)));
-  EXPECT_NEAR(LargestMove(a, b), 0.5, 1e-5);
 }
 
-double Value(const report::Table& table, const std::string& row, size_t column = 0) {
-  for (const report::TableRow& r : table.rows) {
-    if (r.name == row) return r.values[column];
-  }
-  ADD_FAILURE() << row;
-  return NAN;
-}
-
-TEST(MixesTest, TablesHaveAFigureAVariantAndAPair) {
-  MixedAnswer moves = Mixed(1, {0.8, 0.7});
-  moves.largest_move = 0.2;
-  const auto tables =
-      MixTables("m", {"a", "b", "c"}, {kTwoClasses},
-                {{"one label", {Mixed(0, {1, 0})}}, {"0.5 / 0.5", {Mixed(0, {0.5, 0.5}), moves}}});
-  ASSERT_EQ(tables.size(), 3u);
-  EXPECT_EQ(tables[0].columns.size(), 6u);
-  EXPECT_EQ(Value(tables[0], "weaker ingredient"), 0);
-  EXPECT_DOUBLE_EQ(Value(tables[0], "weaker ingredient", 3), 0.6);
-  EXPECT_EQ(Value(tables[0], "both above half", 3), 0.5);
-  EXPECT_EQ(Value(tables[0], "third class", 3), 1);
-  EXPECT_EQ(Value(tables[0], "largest of these moves", 3), 0.2);
-  ASSERT_EQ(tables[2].rows.size(), 1u);
-  EXPECT_EQ(tables[2].rows[0].name, "a + b");
-  EXPECT_EQ(tables[2].rows[0].values.size(), tables[2].columns.size());
-}
-
-TEST(MixesTest, NegativesAreRatiosToTheClassAlone) {
-  const report::Table table = AvoidTable("n", {{0, 0, 1, {0.8f, 0.2f}, {0.6f, 0.4f}, 0.1},
-                                               {1, 0, 1, {0.8f, 0.2f}, {0.2f, 0.8f}, -0.3}});
-  EXPECT_NEAR(Value(table, "requested, of alone"), 0.5, 1e-6);
-  EXPECT_EQ(Value(table, "recognised, of alone"), 0.5);
-  EXPECT_NEAR(Value(table, "avoided"), 0.6, 1e-6);
-  EXPECT_NEAR(Value(table, "distance moved"), 0.2, 1e-9);
-  EXPECT_NEAR(Value(table, "farther"), -0.1, 1e-9);
+TEST(MixesTest, TableHasAFigureAVariant) {
+  const report::Table table =
+      MixTable("m", {kTwoClasses},
+               {{"one label", {Mixed(0, {1, 0})}},
+                {"0.5 / 0.5", {Mixed(0, {0.5, 0.5}), Mixed(1, {0.8, 0.7})}}});
+  EXPECT_EQ(table.columns.size(), 6u);
+  const auto value = [&](const std::string& name, size_t column) {
+    for (const report::TableRow& row : table.rows) {
+      if (row.name == name) return row.values[column];
+    }
+    return NAN * 1.0;
+  };
+  EXPECT_EQ(value("weaker ingredient", 0), 0);
+  EXPECT_DOUBLE_EQ(value("weaker ingredient", 3), 0.6);
+  EXPECT_EQ(value("both above half", 3), 0.5);
+  EXPECT_EQ(value("third class", 3), 1);
 }
 
 }  // namespace
-}  // namespace duet::evaluation::experiments
+}  // namespace duet::evaluation::program
