@@ -89,15 +89,6 @@ TEST_F(ConnectionTest, BrokenStreamIsRetried) {
   EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(50)));
 }
 
-TEST_F(ConnectionTest, MissingSummaryIsRetriedAndThenAnError) {
-  ScriptedStream unfinished = Good();
-  unfinished.responses.pop_back();
-  options_.retry.max_attempts = 4;
-  stub_->streams = {unfinished, unfinished, unfinished, unfinished};
-  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kUnavailable,
-                                     HasSubstr("without a summary, after 5 of 5 frames")));
-}
-
 TEST_F(ConnectionTest, MalformedReplyIsCancelledAndNotRetried) {
   ScriptedStream malformed = Good();
   malformed.responses.erase(malformed.responses.begin() + 1);
@@ -131,19 +122,6 @@ TEST_F(ConnectionTest, AsynchronousCallIsNotRetried) {
   EXPECT_THAT(time_.sleeps, SizeIs(0));
 }
 
-TEST_F(ConnectionTest, FullServerIsRetriedOnlyForBulk) {
-  const ScriptedStream full = Refused(
-      ServiceError(absl::StatusCode::kResourceExhausted, "queue full", absl::Milliseconds(500)));
-  stub_->streams = {full};
-  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kResourceExhausted, "queue full"));
-
-  stub_ = std::make_shared<FakeStub>();
-  stub_->streams = {full, Good()};
-  request_.priority = Priority::kBulk;
-  EXPECT_THAT(Synthesize(), IsOk());
-  EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(500)));
-}
-
 TEST_F(ConnectionTest, CallbackGetsEveryFrameOnceAcrossRetries) {
   stub_->streams = {Broken(), Good(3)};
   motion::Poses frames(0, request_.leader.joint_count());
@@ -168,12 +146,6 @@ TEST_F(ConnectionTest, AResumedStreamComesFromTheSameModelVersion) {
   }
 }
 
-TEST_F(ConnectionTest, RetryWithoutCallbackAcceptsAnyVersion) {
-  stub_->streams = {Broken(), Good()};
-  ASSERT_THAT(Synthesize(), IsOk());
-  EXPECT_EQ(stub_->synthesize_requests[1].model().name(), "");
-}
-
 TEST_F(ConnectionTest, ModelThatIsNoLongerServedIsReported) {
   stub_->streams = {Broken(), Refused(absl::NotFoundError("no version 1"))};
   EXPECT_THAT(Synthesize([](const FollowerChunk&) { return absl::OkStatus(); }),
@@ -194,35 +166,15 @@ TEST_F(ConnectionTest, TheCallbackEndsTheCallWithItsOwnStatus) {
   EXPECT_EQ(stub_->cancelled, 1);
 }
 
-TEST_F(ConnectionTest, TimingsCountFromTheCall) {
-  stub_->streams = {Refused(absl::UnavailableError("away")), Good()};
-  const absl::StatusOr<SynthesisResult> result = Synthesize([this](const FollowerChunk&) {
-    time_.now += absl::Seconds(1);  // three chunks
-    return absl::OkStatus();
-  });
-  ASSERT_THAT(result, IsOk());
-  EXPECT_EQ(result->timings.first_chunk, absl::Milliseconds(50));  // the retry
-  EXPECT_EQ(result->timings.total, absl::Milliseconds(3050));
-}
-
-TEST_F(ConnectionTest, InvalidRequestIsNotSent) {
-  request_.leader.joint_names.clear();
-  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("leader")));
-  EXPECT_THAT(stub_->synthesize_requests, SizeIs(0));
-}
-
-TEST_F(ConnectionTest, ListModelsRetriesAndReads) {
-  v1::ListModelsResponse response;
-  response.add_models()->set_name("first");
-  response.add_models()->set_name("second");
-  stub_->list_models = {absl::UnavailableError("loading"), response};
+TEST_F(ConnectionTest, CallsThatReadModelsAreRetried) {
+  v1::ListModelsResponse listed;
+  listed.add_models()->set_name("first");
+  listed.add_models()->set_name("second");
+  stub_->list_models = {absl::UnavailableError("loading"), listed};
   const auto models = ConnectionImpl(stub_, options_, time_.Environment()).ListModels();
   ASSERT_THAT(models, IsOk());
   EXPECT_THAT(*models,
               ElementsAre(Field(&ModelInfo::name, "first"), Field(&ModelInfo::name, "second")));
-}
-
-TEST_F(ConnectionTest, GetModelRetriesAndReads) {
   v1::GetModelResponse response;
   response.mutable_model()->set_name("dancer");
   response.mutable_limits()->set_min_frames(2);

@@ -193,22 +193,6 @@ TEST_F(LiveSessionTest, ABrokenStreamIsResumedWithTheHistory) {
   EXPECT_TRUE(start.has_seed()) << "the one that the server chose";
 }
 
-TEST_F(LiveSessionTest, FramesWithoutAnAnswerAreInTheStartOfTheNextStream) {
-  mirror_.before_frame = [this](int stream, int frame) {
-    if (stream > 0 || frame < 12) return grpc::Status::OK;
-    finished_.WaitForNotificationWithTimeout(kLongestCall);
-    return Away();
-  };
-  ASSERT_THAT(Start(), IsOk());
-  ASSERT_THAT(Send(0, 40), IsOk());
-  finished_.Notify();
-  ASSERT_THAT(session_->Finish(), IsOk());
-  EXPECT_EQ(follower_, Expected());
-  ASSERT_THAT(mirror_.starts(), SizeIs(2));
-  EXPECT_EQ(mirror_.starts()[1].leader().frame_count(), 33u);  // from frame 7 on
-  EXPECT_DOUBLE_EQ(last_.capture_seconds, 39 / 30.0);
-}
-
 TEST_F(LiveSessionTest, AStartHasAtMostTenSecondsOfTheLeader) {
   leader_ = ThreeJointLeader(500);
   mirror_.before_frame = [this](int stream, int frame) {
@@ -253,16 +237,6 @@ TEST_F(LiveSessionTest, TheDelayHoldsAcrossStreams) {
   EXPECT_FALSE(start.has_follower_start());     // rejected together with history
 }
 
-TEST_F(LiveSessionTest, ManyBreaksLoseNothing) {
-  mirror_.before_frame = [](int stream, int frame) {
-    return frame > stream ? Away() : grpc::Status::OK;  // one frame for each stream
-  };
-  const absl::StatusOr<LiveSummary> summary = StartSendFinish();
-  ASSERT_THAT(summary, IsOk());
-  EXPECT_EQ(follower_, Expected());
-  EXPECT_EQ(summary->resumed, 39);
-}
-
 TEST_F(LiveSessionTest, ADrainingServerIsLeftForAnother) {
   LiveMirror others_mirror;
   FakeServer other;
@@ -278,25 +252,6 @@ TEST_F(LiveSessionTest, ADrainingServerIsLeftForAnother) {
   ASSERT_THAT(summary, IsOk());
   EXPECT_EQ(follower_, Expected());
   EXPECT_THAT(Kinds(), ElementsAre(Kind::kDraining, Kind::kResumed));
-}
-
-TEST_F(LiveSessionTest, AnotherServerReplacesAKilledOne) {
-  LiveMirror others_mirror;
-  auto first = std::make_unique<FakeServer>();
-  Serve(first.get(), &others_mirror);
-  // Connects to the first server only, because the second one does not listen yet.
-  options_.server_address = absl::StrCat("ipv4:", first->address(), ",", server_.address());
-  server_.SetServing(false);
-  ASSERT_THAT(Start(), IsOk());
-  ASSERT_THAT(Send(0, 20), IsOk());
-  server_.SetServing(true);
-  first->Kill();
-  ASSERT_THAT(Send(20, 40), IsOk());
-  const absl::StatusOr<LiveSummary> summary = session_->Finish();
-  ASSERT_THAT(summary, IsOk());
-  EXPECT_EQ(follower_, Expected());
-  EXPECT_EQ(others_mirror.starts().size(), 1u);
-  EXPECT_EQ(mirror_.starts().size(), 1u);
 }
 
 TEST_F(LiveSessionTest, GivesUpWhenNoServerAnswers) {
@@ -360,17 +315,6 @@ TEST_F(LiveSessionTest, GapsAreFilledAlikeOnAllStreams) {
   EXPECT_EQ(summary->gap_frames, 3);
 }
 
-TEST_F(LiveSessionTest, LateFramesAreReported) {
-  ASSERT_THAT(Start(), IsOk());
-  ASSERT_THAT(Send(0, 10), IsOk());
-  ASSERT_THAT(Send(5, 7), IsOk());
-  const absl::StatusOr<LiveSummary> summary = session_->Finish();
-  ASSERT_THAT(summary, IsOk());
-  EXPECT_EQ(summary->late_frames, 2);
-  EXPECT_EQ(summary->leader_frames, 10);
-  EXPECT_THAT(Kinds(), ElementsAre(Kind::kLate, Kind::kLate));
-}
-
 TEST_F(LiveSessionTest, ASilentServerIsLeft) {
   mirror_.before_frame = [this](int stream, int frame) {
     if (stream == 0 && frame == 5) finished_.WaitForNotificationWithTimeout(kLongestCall);
@@ -389,14 +333,6 @@ TEST_F(LiveSessionTest, ASilentServerIsLeft) {
   EXPECT_EQ(follower_, Expected());
   EXPECT_THAT(notices_[0].message, HasSubstr("no answer for 1s"));
   finished_.Notify();
-}
-
-TEST_F(LiveSessionTest, ARejectedStartNamesTheReason) {
-  mirror_.before_frame = [](int, int) {
-    return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "label_vector: no such class");
-  };
-  EXPECT_THAT(Start(), StatusIs(absl::StatusCode::kInvalidArgument, "label_vector: no such class"));
-  EXPECT_THAT(mirror_.starts(), SizeIs(1));
 }
 
 TEST_F(LiveSessionTest, AModelThatIsGoneEndsTheSession) {
@@ -445,13 +381,6 @@ TEST_F(LiveSessionTest, TheCallbackEndsTheSessionWithItsOwnStatus) {
   ASSERT_THAT(Send(0, 1), IsOk());
   EXPECT_THAT(session_->Finish(), StatusIs(absl::StatusCode::kUnavailable, "enough"));
   EXPECT_THAT(mirror_.starts(), SizeIs(1));
-}
-
-TEST_F(LiveSessionTest, DestructionEndsASession) {
-  ASSERT_THAT(Start(), IsOk());
-  ASSERT_THAT(Send(0, 20), IsOk());
-  session_ = nullptr;
-  EXPECT_LE(follower_.frame_count(), 20);
 }
 
 TEST_F(LiveSessionTest, InvalidCallsAreRejectedAndTheSessionGoesOn) {

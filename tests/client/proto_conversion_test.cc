@@ -1,5 +1,7 @@
 #include "client/internal/proto_conversion.h"
 
+#include <google/protobuf/text_format.h>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
@@ -88,66 +90,55 @@ TEST(SynthesizeRequestTest, EveryFieldIsSent) {
 
 // What the wire could not carry is refused here, naming the field; the rest is the server's.
 TEST(SynthesizeRequestTest, ValuesThatTheProtoCannotHoldAreRejected) {
-  const auto refused = [](void (*spoil)(SynthesisRequest*)) {
+  const struct {
+    const char* message;
+    void (*spoil)(SynthesisRequest*);
+  } cases[] = {
+      {"leader.joint_names: expected", [](SynthesisRequest* r) { r->leader.joint_names.clear(); }},
+      {"leader.positions: expected a multiple of 3",
+       [](SynthesisRequest* r) {
+         r->leader.poses = motion::Poses(3, std::vector<motion::Vec3>(5));
+       }},
+      {"leader.positions: expected poses of the",
+       [](SynthesisRequest* r) { r->leader.poses = motion::Poses(3, 5); }},
+      {"label_keyframes[0].frame: expected 0 or more, got -1",
+       [](SynthesisRequest* r) {
+         r->keyframes.push_back({-1, {{"kick", 1}}});
+       }},
+      {"chunk_frames: expected 1 or more, got -8",
+       [](SynthesisRequest* r) { r->chunk_frames = -8; }},
+      {"constraints[0].frame: expected 0 or more, got -1",
+       [](SynthesisRequest* r) {
+         r->constraints.push_back({"head", -1, {}});
+       }},
+      {"candidates: expected 1 or more, got 0", [](SynthesisRequest* r) { r->candidates = 0; }},
+      {"model.version: expected 1 or more, got 0",
+       [](SynthesisRequest* r) { r->model.version = 0; }},
+      {"got both: 1 and \"canary\"", [](SynthesisRequest* r) {
+         r->model = {"dancer", 1, "canary"};
+       }}};
+  for (const auto& [message, spoil] : cases) {
     SynthesisRequest request = GoodRequest();
     spoil(&request);
-    return ToProto(request).status();
-  };
-  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-  EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.joint_names.clear(); }),
-              StatusIs(kInvalid, HasSubstr("leader.joint_names: expected")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) {
-                r->leader.poses = motion::Poses(3, std::vector<motion::Vec3>(5));
-              }),
-              StatusIs(kInvalid, HasSubstr("leader.positions: expected a multiple of 3")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.poses = motion::Poses(3, 5); }),
-              StatusIs(kInvalid, HasSubstr("leader.positions: expected poses of the")));
-  EXPECT_THAT(
-      refused([](SynthesisRequest* r) {
-        r->keyframes = {{-1, {{"kick", 1}}}};
-      }),
-      StatusIs(kInvalid, HasSubstr("label_keyframes[0].frame: expected 0 or more, got -1")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) { r->chunk_frames = -8; }),
-              StatusIs(kInvalid, HasSubstr("chunk_frames: expected 1 or more, got -8")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) {
-                r->constraints = {{"head", -1, {}}};
-              }),
-              StatusIs(kInvalid, HasSubstr("constraints[0].frame: expected 0 or more, got -1")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) { r->candidates = 0; }),
-              StatusIs(kInvalid, HasSubstr("candidates: expected 1 or more, got 0")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) { r->model.version = 0; }),
-              StatusIs(kInvalid, HasSubstr("model.version: expected 1 or more, got 0")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) {
-                r->model = {"dancer", 1, "canary"};
-              }),
-              StatusIs(kInvalid, HasSubstr("got both: 1 and \"canary\"")));
+    EXPECT_THAT(ToProto(request), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message)));
+  }
 }
 
-v1::Model GoodModel() {
-  v1::Model model;
-  model.set_name("dancer");
-  model.set_version(2);
-  model.add_version_labels("stable");
-  model.set_is_default(true);
-  model.add_interaction_classes("kick");
-  for (const char* joint : {"root", "left", "right"}) model.add_joint_names(joint);
-  v1::Bone* bone = model.add_bones();
-  bone->set_parent_joint(0);
-  bone->set_child_joint(2);
-  model.set_root_joint("root");
-  model.set_frame_rate_hz(15);
-  model.set_window_frames(46);
-  model.set_accepts_follower_start(true);
-  model.set_samples(true);
-  model.set_description("A model.");
-  model.set_terms("For research only.");
-  model.set_weights_sha256("ab12");
-  model.set_free_for_all_uses(true);
-  return model;
+template <typename Message>
+Message Parse(const char* text) {
+  Message message;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &message)) << text;
+  return message;
 }
+
+constexpr char kModel[] = R"(
+  name: "dancer" version: 2 version_labels: "stable" is_default: true interaction_classes: "kick"
+  joint_names: "root" joint_names: "left" joint_names: "right" bones { child_joint: 2 }
+  root_joint: "root" frame_rate_hz: 15 window_frames: 46 accepts_follower_start: true samples: true
+  description: "A model." terms: "For research only." weights_sha256: "ab12" free_for_all_uses: true)";
 
 TEST(ModelTest, EveryFieldIsRead) {
-  const absl::StatusOr<ModelInfo> info = FromProto(GoodModel());
+  const absl::StatusOr<ModelInfo> info = FromProto(Parse<v1::Model>(kModel));
   ASSERT_THAT(info, IsOk());
   EXPECT_EQ(info->name, "dancer");
   EXPECT_EQ(info->version, 2);
@@ -168,7 +159,7 @@ TEST(ModelTest, EveryFieldIsRead) {
 }
 
 TEST(ModelTest, BoneWithoutAJointIsAnInternalError) {
-  v1::Model model = GoodModel();
+  auto model = Parse<v1::Model>(kModel);
   model.mutable_bones(0)->set_child_joint(3);
   EXPECT_THAT(
       FromProto(model),
@@ -178,19 +169,10 @@ TEST(ModelTest, BoneWithoutAJointIsAnInternalError) {
 }
 
 TEST(RequestLimitsTest, EveryFieldIsRead) {
-  v1::RequestLimits wire;
-  wire.set_min_frame_rate_hz(1);
-  wire.set_max_frame_rate_hz(240);
-  wire.set_min_frames(2);
-  wire.set_max_duration_seconds(600);
-  wire.set_max_chunk_frames(240);
-  wire.set_max_label_keyframes(100);
-  wire.set_max_abs_weight(2);
-  wire.set_max_variety(1.5F);
-  wire.set_max_candidates(16);
-  wire.set_max_constraints(64);
-  wire.set_max_request_bytes(16 << 20);
-  const RequestLimits limits = FromProto(wire);
+  const RequestLimits limits = FromProto(Parse<v1::RequestLimits>(
+      "min_frame_rate_hz: 1 max_frame_rate_hz: 240 min_frames: 2 max_duration_seconds: 600 "
+      "max_chunk_frames: 240 max_label_keyframes: 100 max_abs_weight: 2 max_variety: 1.5 "
+      "max_candidates: 16 max_constraints: 64 max_request_bytes: 16777216"));
   EXPECT_EQ(limits.min_frame_rate_hz, 1);
   EXPECT_EQ(limits.max_frame_rate_hz, 240);
   EXPECT_EQ(limits.min_frames, 2);

@@ -50,6 +50,9 @@ TEST_F(RetryTest, UnavailableIsRetriedWithGrowingWaitsUpToMaxAttempts) {
   EXPECT_EQ(attempts_, 4);
   EXPECT_THAT(time_.sleeps,
               ElementsAre(100 * kMillisecond, 200 * kMillisecond, 400 * kMillisecond));
+  attempts_ = 0;
+  EXPECT_THAT(Run({absl::CancelledError("CANCELLED"), absl::OkStatus()}), IsOk())
+      << "dropped without a status";
 }
 
 TEST_F(RetryTest, OnlyTheDeadlineEndsTheAttempts) {
@@ -128,21 +131,6 @@ TEST(IsUnreachableTest, StatusWithDetailsOrUnhealthyServerIsReachable) {
   EXPECT_FALSE(IsUnreachable(absl::InternalError("")));
 }
 
-TEST_F(RetryTest, CallThatWasDroppedWithoutAStatusIsRetried) {
-  EXPECT_THAT(Run({absl::CancelledError("CANCELLED"), absl::OkStatus()}), IsOk());
-  EXPECT_EQ(attempts_, 2);
-}
-
-TEST_F(RetryTest, ReportsTheReasonAndLengthOfEachWait) {
-  std::vector<absl::Duration> told;
-  options_.on_wait = [&](const absl::Status& why, absl::Duration wait) {
-    EXPECT_THAT(why, StatusIs(absl::StatusCode::kUnavailable, "away"));
-    told.push_back(wait);
-  };
-  EXPECT_THAT(Run({Unavailable(), Unavailable(), absl::OkStatus()}), IsOk());
-  EXPECT_EQ(told, time_.sleeps);
-}
-
 TEST_F(RetryTest, OtherCodesAreFinal) {
   for (absl::StatusCode code :
        {absl::StatusCode::kInvalidArgument, absl::StatusCode::kNotFound,
@@ -154,37 +142,30 @@ TEST_F(RetryTest, OtherCodesAreFinal) {
   }
 }
 
-TEST_F(RetryTest, BulkWorkWaitsForAFullServer) {
-  const absl::Status full =
-      ServiceError(absl::StatusCode::kResourceExhausted, "full", 2 * kMillisecond);
-  EXPECT_THAT(Run({full, absl::OkStatus()}, Priority::kBulk), IsOk());
-  EXPECT_EQ(attempts_, 2);
-}
-
-TEST_F(RetryTest, InteractiveCallFailsIfTheServerIsFull) {
-  const absl::Status full =
-      ServiceError(absl::StatusCode::kResourceExhausted, "full", 2 * kMillisecond);
-  EXPECT_THAT(Run({full}), StatusIs(absl::StatusCode::kResourceExhausted, "full"));
-}
-
-TEST_F(RetryTest, TooLargeMessageIsNotRetried) {
-  const absl::Status large = ServiceError(absl::StatusCode::kResourceExhausted, "too large");
-  EXPECT_THAT(Run({large}, Priority::kBulk),
-              StatusIs(absl::StatusCode::kResourceExhausted, "too large"));
-}
-
-TEST_F(RetryTest, RetryDelayOfTheServerIsRespected) {
-  const absl::Status later =
-      ServiceError(absl::StatusCode::kUnavailable, "later", absl::Seconds(7));
-  EXPECT_THAT(Run({later, absl::OkStatus()}), IsOk());
+TEST_F(RetryTest, AFullServerIsRetriedForBulkWorkIfItSaysWhen) {
+  const auto full = [](absl::Duration delay) {
+    return ServiceError(absl::StatusCode::kResourceExhausted, "full", delay);
+  };
+  EXPECT_THAT(Run({full(absl::Seconds(7)), absl::OkStatus()}, Priority::kBulk), IsOk());
   EXPECT_THAT(time_.sleeps, ElementsAre(absl::Seconds(7)));
+  const auto is_final = StatusIs(absl::StatusCode::kResourceExhausted, "full");
+  attempts_ = 0;
+  EXPECT_THAT(Run({full(kMillisecond)}), is_final) << "interactive";
+  attempts_ = 0;
+  EXPECT_THAT(Run({full(absl::InfiniteDuration())}, Priority::kBulk), is_final) << "too large";
 }
 
-TEST_F(RetryTest, RetryDelayNeverShortensTheWait) {
-  const absl::Status soon =
-      ServiceError(absl::StatusCode::kUnavailable, "soon", absl::ZeroDuration());
-  EXPECT_THAT(Run({soon, absl::OkStatus()}), IsOk());
-  EXPECT_THAT(time_.sleeps, ElementsAre(50 * kMillisecond));
+TEST(RetryWaitTest, JitterIsAddedToTheLongerOfBackoffAndRetryDelay) {
+  const RetryOptions options;
+  const auto wait = [&](int attempt, absl::Duration delay, double jitter) {
+    const auto status = ServiceError(absl::StatusCode::kUnavailable, "later", delay);
+    return RetryWait(options, attempt, status, jitter);
+  };
+  EXPECT_EQ(wait(1, absl::ZeroDuration(), 0), 50 * kMillisecond);
+  EXPECT_EQ(wait(1, absl::ZeroDuration(), 1), 100 * kMillisecond);
+  EXPECT_EQ(wait(1, absl::Seconds(3), 0), absl::Seconds(3));
+  EXPECT_EQ(wait(1, absl::Seconds(3), 1), absl::Seconds(3) + 50 * kMillisecond);
+  EXPECT_EQ(wait(1'000'000, absl::ZeroDuration(), 1), options.max_backoff);
 }
 
 TEST_F(RetryTest, StopsWhenTheWaitWouldPassTheDeadline) {
@@ -194,27 +175,6 @@ TEST_F(RetryTest, StopsWhenTheWaitWouldPassTheDeadline) {
   EXPECT_THAT(Run({later}), StatusIs(absl::StatusCode::kUnavailable,
                                      HasSubstr("the deadline leaves no time for another")));
   EXPECT_THAT(time_.sleeps, IsEmpty());
-}
-
-TEST(RetryWaitTest, JitterSpreadsOverTheUpperHalf) {
-  const RetryOptions options;
-  absl::Status status = Unavailable();
-  EXPECT_EQ(RetryWait(options, 1, status, 0), 50 * kMillisecond);
-  EXPECT_EQ(RetryWait(options, 1, status, 0.5), 75 * kMillisecond);
-  EXPECT_EQ(RetryWait(options, 1, status, 1), 100 * kMillisecond);
-}
-
-TEST(RetryWaitTest, JitterIsAddedToTheRetryDelay) {
-  const RetryOptions options;
-  const absl::Status later =
-      ServiceError(absl::StatusCode::kUnavailable, "later", absl::Seconds(3));
-  EXPECT_EQ(RetryWait(options, 1, later, 0), absl::Seconds(3));
-  EXPECT_EQ(RetryWait(options, 1, later, 1), absl::Seconds(3) + 50 * kMillisecond);
-}
-
-TEST(RetryWaitTest, ManyAttemptsDoNotOverflow) {
-  const RetryOptions options;
-  EXPECT_EQ(RetryWait(options, 1'000'000, Unavailable(), 1), options.max_backoff);
 }
 
 }  // namespace

@@ -42,6 +42,14 @@ motion::Poses SwayingMotion(int frames, double frame_rate_hz) {
   return motion;
 }
 
+motion::Clip SwayingClip(int frames, double frame_rate_hz) {
+  motion::Clip clip;
+  clip.joint_names = motion::SbuSkeleton().joint_names;
+  clip.frame_rate_hz = frame_rate_hz;
+  clip.poses = SwayingMotion(frames, frame_rate_hz);
+  return clip;
+}
+
 motion::Poses SteppingMotion(const std::vector<double>& steps, int frames, double frame_rate_hz) {
   constexpr double kStepSeconds = 0.3, kStepSpeed = 1;
   const motion::JointPair feet = *motion::SbuSkeleton().feet;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "model/motion/clip.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
@@ -16,6 +17,9 @@ std::vector<motion::Vec3> SwayingPose(double seconds);
 
 // The same as a motion from time 0. Shapes: [frames, 15].
 motion::Poses SwayingMotion(int frames, double frame_rate_hz);
+
+// The same as a clip.
+motion::Clip SwayingClip(int frames, double frame_rate_hz);
 
 // A person of the SBU skeleton who stands, and steps forward with the left and the right foot in
 // turn: each step takes 0.3 s at 1 m/s, and ends at one of the ascending times `steps`, seconds.

@@ -64,7 +64,6 @@ class FakeConnection : public Connection {
     result.request_id = request.request_id;
     result.seed = *request.seed;
     result.candidates = request.candidates;
-    result.grade = grade;
     result.cleaned_up = made_by.cleaned_up;
     result.engine = made_by.engine;
     result.server_version = made_by.server_version;
@@ -72,7 +71,6 @@ class FakeConnection : public Connection {
   }
   std::function<absl::Status(const SynthesisRequest&, int call)> answer;
   float distance = 1;
-  std::optional<MotionGrade> grade;
   MadeBy made_by = {true, "cpu, bf16, AVX-512", "1.0.0"};
   std::atomic<int> calls{0};
 };
@@ -85,13 +83,10 @@ JobOptions WithFewThreads(JobOptions options) {
 class JobTest : public ::testing::Test {
  protected:
   JobTest() {
-    motion::ClipPair pair;
-    pair.leader.joint_names = motion::SbuSkeleton().joint_names;
-    pair.leader.frame_rate_hz = 15;
-    pair.leader.poses = test::SwayingMotion(5, 15);
-    pair.follower = pair.leader;
+    const motion::Clip leader = test::SwayingClip(5, 15);
     for (const char* name : {"a.csv", "b.csv"}) {
-      EXPECT_THAT(formats::WritePair(folder_ / name, pair, motion::SbuSkeleton()), IsOk());
+      EXPECT_THAT(formats::WritePair(folder_ / name, {leader, leader}, motion::SbuSkeleton()),
+                  IsOk());
     }
   }
 
@@ -130,10 +125,7 @@ class JobTest : public ::testing::Test {
              survey->get(),
              check->items},
             *std::move(plan), WithFewThreads(options));
-    job_ = &job;
-    absl::StatusOr<JobReport> report = job.Run();
-    job_ = nullptr;
-    return report;
+    return job.Run();
   }
 
   std::string Read(const std::string& path) { return ReadTestFile(folder_ / path); }
@@ -165,24 +157,7 @@ class JobTest : public ::testing::Test {
   std::string recipe_ = kRecipe;
   Repeats repeats_;
   std::shared_ptr<FakeConnection> connection_ = std::make_shared<FakeConnection>();
-  std::atomic<Job*> job_{nullptr};
 };
-
-TEST_F(JobTest, EveryRequestHasTheVerticalOfTheRecipe) {
-  recipe_ = absl::StrCat(kRecipe, " input { up: [0.25, 1, 0.125] }");
-  connection().answer = [](const SynthesisRequest& request, int) {
-    EXPECT_EQ(request.up, (motion::Vec3{0.25f, 1, 0.125f}));
-    return absl::OkStatus();
-  };
-  ASSERT_THAT(Run("tilted"), IsOk());
-  EXPECT_EQ(connection().calls, kItems);
-  recipe_ = kRecipe;
-  connection().answer = nullptr;
-  ASSERT_THAT(Run("level"), IsOk());
-  EXPECT_NE(Lines("tilted/index.jsonl")[0].substr(0, 60),
-            Lines("level/index.jsonl")[0].substr(0, 60))
-      << "other ids";
-}
 
 TEST_F(JobTest, AnswersThatAreMadeInAnotherWayAreRefusedByName) {
   JobOptions some;
@@ -212,20 +187,6 @@ TEST_F(JobTest, AnswersThatAreMadeInAnotherWayAreRefusedByName) {
   connection().made_by = first;
   EXPECT_THAT(Run("set"), IsOk());
   ExpectSameAsUndisturbed("set");
-}
-
-TEST_F(JobTest, RejectsAnswersByTheirGrade) {
-  recipe_.insert(recipe_.find("retries_per_item"), "max_twisted: 0.1 ");
-  connection().grade = MotionGrade{0.125, 0.5, 0.25, 0, {}};
-  const auto report = Run("set");
-  ASSERT_THAT(report, IsOk());
-  EXPECT_EQ(report->set.rejected, kItems);
-  EXPECT_EQ(connection().calls, 3 * kItems);
-  EXPECT_THAT(Lines("set/rejected.jsonl")[0],
-              HasSubstr("twisted: expected at most 0.1, got 0.125"));
-  const auto quality = nlohmann::json::parse(Lines("set/rejected.jsonl")[0])["quality"];
-  EXPECT_EQ(quality["skating"], 0.5);
-  EXPECT_EQ(quality["leader_skating"], 0.25);
 }
 
 TEST_F(JobTest, ContinuesAfterAJournalTruncatedAnywhere) {
@@ -328,33 +289,21 @@ TEST_F(JobTest, RejectedAnswersAreRetriedWithOtherSeedsAndListed) {
   EXPECT_EQ(rejected, kItems);
 }
 
-TEST_F(JobTest, StopsBetweenItems) {
-  connection().answer = [this](const SynthesisRequest&, int call) {
-    if (call == 3) job_.load()->Stop();
-    return absl::OkStatus();
-  };
-  JobOptions options;
-  options.calls.max_in_flight = 1;
-  const auto report = Run("set", options);
-  ASSERT_THAT(report, IsOk());
-  EXPECT_EQ(report->set.done, 4);
-  // The run has not reached the end of the plan, which the check before it has counted.
-  EXPECT_EQ(report->planned, kItems);
-  EXPECT_EQ(nlohmann::json::parse(Read("set/dataset.json"))["items"]["missing"], kItems - 4);
-  connection().answer = nullptr;
-  ASSERT_THAT(Run("set"), IsOk());
-  ExpectSameAsUndisturbed("set");
-}
-
-TEST_F(JobTest, LeadersInAnotherOrderAreRejected) {
-  ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_THAT(
-      Run("set", {}, "leader\nb.csv\na.csv\n"),
-      StatusIs(
-          absl::StatusCode::kFailedPrecondition,
-          HasSubstr("item 0: expected a-2-kick-s0 of a.csv as the set was begun with, got b-2-")));
-  EXPECT_THAT(Run("set", {}, "leader\na.csv\nb.csv\na.csv\n"), IsOk());
-  EXPECT_EQ(connection().calls, kItems + kItems / 2);
+TEST_F(JobTest, ChangedLinesAndOrdersAreRejectedAndAddedLinesAreMade) {
+  const std::string header = "leader\tlabels\tseed\n";
+  ASSERT_THAT(Run("set", {}, header + "a.csv\tkick=1\t1\nb.csv\t\t\n"), IsOk());
+  const int calls = connection().calls;
+  const std::pair<const char*, const char*> cases[] = {
+      {"b.csv\t\t\na.csv\tkick=1\t1\n",
+       "item 0: expected a-2-kick-s0 of a.csv as the set was begun with, got b-2-"},
+      {"a.csv\tkick=0.5\t1\n", "as the set was begun with, got a-2-kick0p5"},
+      {"a.csv\tkick=1\t2\n", "got a-2-kick-s0 of a.csv, asked in another way"}};
+  for (const auto& [lines, message] : cases) {
+    EXPECT_THAT(Run("set", {}, header + lines),
+                StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(message)));
+  }
+  EXPECT_THAT(Run("set", {}, header + "a.csv\tkick=1\t1\nb.csv\t\t\na.csv\t\t\n"), IsOk());
+  EXPECT_EQ(connection().calls, calls + kItems / 2);
 }
 
 TEST_F(JobTest, UnreadableLeaderFailsOnlyItsItems) {
@@ -369,58 +318,6 @@ TEST_F(JobTest, UnreadableLeaderFailsOnlyItsItems) {
   EXPECT_EQ(record["error"]["code"], "NOT_FOUND");
   EXPECT_EQ(report->set.failed_leaders, 1);
   EXPECT_THAT(report->set.first_failure, EndsWith("none.csv: no such file"));
-}
-
-TEST_F(JobTest, MissingInformationNamesTheRecipesField) {
-  motion::Clip walk;
-  walk.joint_names = motion::SbuSkeleton().joint_names;
-  walk.frame_rate_hz = 15;
-  walk.poses = test::SwayingMotion(5, 15);
-  ASSERT_THAT(formats::WritePeople(folder_ / "walk.npy", formats::Format::kNpy, {walk},
-                                   motion::SbuSkeleton()),
-              IsOk());
-  ASSERT_THAT(Run("set", {}, "leader\nwalk.npy\n"), IsOk());
-  EXPECT_THAT(Read("set/failed.jsonl"),
-              HasSubstr("specify it in the recipe: input { frame_rate_hz }"));
-}
-
-TEST_F(JobTest, ChangedLinesAreRejected) {
-  const std::string before = "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t1\n";
-  ASSERT_THAT(Run("set", {}, before), IsOk());
-  const auto refused = [](const char* message) {
-    return StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(message));
-  };
-  EXPECT_THAT(
-      Run("set", {}, "id\tleader\tlabels\tseed\nx\ta.csv\tkick=0.5\t1\n"),
-      refused("item 0: expected x-kick-s0 of a.csv as the set was begun with, got x-kick0p5"));
-  EXPECT_THAT(Run("set", {}, "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t2\n"),
-              refused("got x-kick-s0 of a.csv, asked in another way"));
-  EXPECT_THAT(Run("set", {}, before), IsOk());
-}
-
-// The same size and another byte.
-void Change(const std::filesystem::path& file, size_t at) {
-  std::string content = ReadTestFile(file);
-  content[at] = static_cast<char>(content[at] ^ 1);
-  test::WriteTestFile(file, content);
-}
-
-TEST_F(JobTest, ChangedFilesAreRequestedAgainIfTheyAreRead) {
-  ASSERT_THAT(Run("set"), IsOk());
-  Change(folder_ / "set/a-2-kick-s0.npy", 500);
-  ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_EQ(connection().calls, kItems);  // a look without reading does not find it
-  repeats_.changed = true;
-  // A part that does not have it leaves it to the next run.
-  JobOptions none;
-  none.limit = 0;
-  ASSERT_THAT(Run("set", none), IsOk());
-  ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_EQ(connection().calls, kItems + 1);
-  ExpectSameAsUndisturbed("set");
-  const int calls = connection().calls;
-  ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_EQ(connection().calls, calls);
 }
 
 TEST_F(JobTest, ChangedLeaderIsRejected) {

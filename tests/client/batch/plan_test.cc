@@ -61,13 +61,28 @@ std::vector<std::string> Names(const std::vector<Item>& items) {
 
 constexpr char kKick[] = "reactions { labels { weights { key: 'kick' value: 1 } } }";
 
-TEST(Plan, GoesThroughLeadersReactionsModelsAndSamples) {
-  const auto items = PlanOf(std::string(kKick) + "models: 'sbu' models: 'k3hi' samples: 2",
-                            "leader\na.bvh\n", {Model("sbu"), Model("k3hi")});
-  ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("a-2-kick-sbu_2-s0", "a-2-kick-sbu_2-s1",
-                                         "a-2-kick-k3hi_2-s0", "a-2-kick-k3hi_2-s1"));
-  for (size_t i = 0; i < items->size(); ++i) EXPECT_EQ((*items)[i].number, static_cast<int64_t>(i));
+TEST(Plan, GoesThroughLeadersSidesReactionsModelsAndSamples) {
+  const std::string kick = kKick;
+  const struct {
+    std::string recipe;
+    std::vector<ModelInfo> models;
+    std::vector<std::string> names;
+  } cases[] = {
+      {kick + "models: 'sbu' models: 'k3hi' samples: 2",
+       {Model("sbu"), Model("k3hi")},
+       {"a-2-kick-sbu_2-s0", "a-2-kick-sbu_2-s1", "a-2-kick-k3hi_2-s0", "a-2-kick-k3hi_2-s1"}},
+      {"reactions { each_class {} } reactions { name: 'm' mixes { count: 2 } }",
+       {Model("sbu")},
+       {"a-2-kick", "a-2-push", "a-2-hug", "a-2-m0", "a-2-m1"}},
+      {kick + "input { side: SIDE_BOTH }", {Model("sbu")}, {"a-2-left-kick", "a-2-right-kick"}}};
+  for (const auto& [recipe, models, names] : cases) {
+    const auto items = PlanOf(recipe, "leader\na.bvh\n", models);
+    ASSERT_THAT(items, IsOk());
+    EXPECT_EQ(Names(*items), names);
+    for (size_t i = 0; i < items->size(); ++i) {
+      EXPECT_EQ((*items)[i].number, static_cast<int64_t>(i));
+    }
+  }
 }
 
 TEST(Plan, OnlySeveralCandidatesChangeTheItem) {
@@ -79,16 +94,6 @@ TEST(Plan, OnlySeveralCandidatesChangeTheItem) {
   EXPECT_EQ(id("candidates: 1"), id(""));
   EXPECT_NE(id("candidates: 4"), id(""));
   EXPECT_NE(id("candidates: 4"), id("candidates: 5"));
-}
-
-TEST(Plan, EveryKindOfReaction) {
-  const auto items = PlanOf(R"(
-    reactions { each_class {} }
-    reactions { name: 'm' mixes { count: 2 classes_in_mix: 3 } })",
-                            "leader\na.bvh\n");
-  ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("a-2-kick", "a-2-push", "a-2-hug", "a-2-m0", "a-2-m1"));
-  EXPECT_EQ((*items)[3].labels.size(), 3u);
 }
 
 TEST(Plan, MixesDifferFromLeaderToLeaderAndNotFromRunToRun) {
@@ -125,86 +130,35 @@ TEST(Plan, LabelsSideSeedAndGroupOfALineOverrideTheRecipe) {
   EXPECT_NE(SeedOf((*items)[1], 0, "content", 1), 10u);
 }
 
-TEST(Plan, SeedsDifferFromItemToItem) {
-  const auto items = PlanOf(std::string(kKick) + "samples: 20");
-  std::set<uint64_t> seeds;
-  for (const Item& item : *items) {
-    const std::string content = item.leader->given;
-    EXPECT_LT(SeedOf(item, 0, content, 0), uint64_t{1} << 53);
-    seeds.insert(SeedOf(item, 0, content, 0));
-    seeds.insert(SeedOf(item, 0, content, 1));
-    seeds.insert(SeedOf(item, 1, content, 0));
-  }
-  EXPECT_EQ(seeds.size(), 3 * items->size());
-}
-
-// Folders with the same leader in each, as different people list it.
-class ListedLeaders : public ::testing::Test {
- protected:
-  ListedLeaders() {
-    std::filesystem::create_directory(folder_ / "walks");
-    test::WriteTestFile(folder_ / "walks/a.bvh", "a walk");
-    test::WriteTestFile(folder_ / "walks/b.bvh", "another walk");
-    std::filesystem::create_directory_symlink(folder_ / "walks", folder_ / "link");
-    ways_ = {(folder_ / "walks/a.bvh").string(), (folder_ / "walks/./a.bvh").string(),
-             (folder_ / "link/../walks/a.bvh").string(), (folder_ / "link/a.bvh").string()};
-  }
-  // The items of one leader, which is the second of the list, so that its line has another number.
-  std::vector<Item> Of(const std::string& recipe, const std::string& path,
-                       const std::string& id = "") {
-    const std::string other = (folder_ / "walks/b.bvh").string();
-    const std::string list = id.empty() ? absl::StrCat("leader\n", other, "\n", path, "\n")
-                                        : absl::StrCat("leader\tid\n", path, "\t", id, "\n");
-    std::vector<Item> items = *PlanOf(recipe, list);
-    const auto others = static_cast<std::ptrdiff_t>(items.size() / 2);
-    if (id.empty()) items.erase(items.begin(), items.begin() + others);
-    return items;
-  }
-  test::TemporaryFolder folder_;
-  std::vector<std::string> ways_;
-};
-
-TEST_F(ListedLeaders, SeedsAndMixesFollowTheContentAndNotThePath) {
-  const std::string recipe = absl::StrCat(kKick, " reactions { mixes { count: 2 } } samples: 2");
-  const std::vector<Item> first = Of(recipe, ways_[0]);
-  for (const std::string& way : ways_) {
-    const std::vector<Item> items = Of(recipe, way);
-    ASSERT_EQ(items.size(), 6u);
-    for (size_t i = 0; i < items.size(); ++i) {
-      EXPECT_EQ(SeedOf(items[i], 7, "content", 0), SeedOf(first[i], 7, "content", 0)) << way;
-      EXPECT_NE(SeedOf(items[i], 7, "content", 0), SeedOf(first[i], 7, "other", 0)) << way;
-      EXPECT_EQ(NameOfLabels(items[i].labels), NameOfLabels(first[i].labels)) << way;
+TEST(Plan, SeedsAndMixesFollowTheContentOrTheIdAndNotThePath) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "walks");
+  test::WriteTestFile(folder / "walks/a.bvh", "a walk");
+  test::WriteTestFile(folder / "walks/b.bvh", "another walk");
+  std::filesystem::create_directory_symlink(folder / "walks", folder / "link");
+  // What decides about the items of a leader that is listed in a way: seeds and labels.
+  const auto drawn = [&](const std::string& way, const std::string& id = "",
+                         const std::string& content = "content") {
+    std::string list = absl::StrCat("leader\n", (folder / way).string(), "\n");
+    if (!id.empty()) list = absl::StrCat("leader\tid\n", (folder / way).string(), "\t", id, "\n");
+    const auto items =
+        PlanOf(absl::StrCat(kKick, " reactions { mixes { count: 2 } } samples: 2"), list);
+    std::vector<std::string> found;
+    for (const Item& item : *items) {
+      found.push_back(absl::StrCat(SeedOf(item, 7, content, 0), " ", NameOfLabels(item.labels)));
     }
-  }
-  const std::vector<Item> other = Of(recipe, (folder_ / "walks/b.bvh").string());
-  EXPECT_NE(NameOfLabels(other[2].labels), NameOfLabels(first[2].labels));
-}
-
-TEST_F(ListedLeaders, SeedsAndMixesFollowTheIdWhereThereIsOne) {
-  const std::string recipe = absl::StrCat(kKick, " reactions { mixes { count: 1 } }");
-  const std::vector<Item> one = Of(recipe, ways_[0], "one"), again = Of(recipe, ways_[3], "one"),
-                          two = Of(recipe, ways_[0], "two");
-  EXPECT_EQ(SeedOf(one[0], 7, "content", 0), SeedOf(again[0], 7, "content", 0));
-  EXPECT_NE(SeedOf(one[0], 7, "content", 0), SeedOf(two[0], 7, "content", 0));
-  EXPECT_EQ(NameOfLabels(one[1].labels), NameOfLabels(again[1].labels));
-  EXPECT_NE(NameOfLabels(one[1].labels), NameOfLabels(two[1].labels));
-}
-
-TEST_F(ListedLeaders, FollowersStartCountsByItsContentToo) {
-  const auto seed = [this](const std::string& start, const std::string& content) {
-    const std::string list = absl::StrCat("leader\tfollower_start\n", ways_[0], "\t", start, "\n");
-    return SeedOf((*PlanOf(kKick, list))[0], 7, content, 0);
+    return found;
   };
-  EXPECT_EQ(seed(ways_[1], "content"), seed(ways_[2], "content"));
-  EXPECT_NE(seed(ways_[1], "content"), seed(ways_[1], "content and another start"));
-  EXPECT_NE(seed("1,0,1", "content"), seed("1,0,2", "content"));
-}
-
-TEST(Plan, BothSidesLead) {
-  const auto items = PlanOf(std::string("input { side: SIDE_BOTH } ") + kKick, "leader\na.bvh\n");
-  ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("a-2-left-kick", "a-2-right-kick"));
-  EXPECT_EQ((*items)[1].side, formats::Side::kRight);
+  const auto first = drawn("walks/a.bvh");
+  EXPECT_EQ(std::set<std::string>(first.begin(), first.end()).size(), 6u)
+      << "each has its own seed";
+  for (const char* way : {"walks/./a.bvh", "link/../walks/a.bvh", "link/a.bvh"}) {
+    EXPECT_EQ(drawn(way), first) << way;
+  }
+  EXPECT_NE(drawn("walks/b.bvh")[2], first[2]);
+  EXPECT_NE(drawn("walks/a.bvh", "", "other"), first);
+  EXPECT_EQ(drawn("walks/a.bvh", "one"), drawn("link/a.bvh", "one"));
+  EXPECT_NE(drawn("walks/a.bvh", "one"), drawn("walks/a.bvh", "two"));
 }
 
 TEST(Plan, InvalidCombinationsAreRejected) {

@@ -18,18 +18,6 @@ absl::StatusOr<Recipe> Parse(const std::string& text) {
   return ParseRecipe(has_output ? text : text + kOutput, /*json=*/false);
 }
 
-TEST(Recipe, AbsentFieldsHaveTheirDefaults) {
-  const auto recipe = Parse("");
-  ASSERT_THAT(recipe, IsOk());
-  EXPECT_EQ(recipe->samples, 1);
-  EXPECT_EQ(recipe->variety, 1);
-  EXPECT_EQ(recipe->candidates, 1);
-  ASSERT_EQ(recipe->models.size(), 1u);
-  EXPECT_EQ(recipe->models[0].name, "");
-  EXPECT_EQ(recipe->input.side, v1::SIDE_LEFT);
-  EXPECT_EQ(recipe->input.up, std::nullopt);
-}
-
 TEST(Recipe, TextFormatAndJsonAreEquivalent) {
   const auto text = Parse(R"(
     seed: 3 models: "sbu@2" variety: 0.5 candidates: 4
@@ -112,12 +100,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"output { formats: FORMAT_NPY packing: PACKING_TAR }", "packing", ""},
         BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: expected",
                   ", got 3 twice"}));
-
-TEST(Recipe, OutputFormatsAreRequired) {
-  EXPECT_THAT(ParseRecipe("", false),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("output.formats: expected one or more, got none")));
-}
 
 TEST(ReadRecipe, ErrorsNameTheFileAndExtensionSelectsTheFormat) {
   const test::TemporaryFolder folder;

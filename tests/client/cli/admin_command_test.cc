@@ -71,10 +71,11 @@ class AdminCommandTest : public ::testing::Test {
  protected:
   AdminCommandTest() {
     ParseText(R"(models { name: "sbu" version: 3 state: MODEL_STATE_SERVED version_labels: "canary"
-                          is_default: true load_seconds: 0.5 }
+                          is_default: true outdated: true error: "weights: expected the SHA-256" }
                  models { name: "sbu" version: 2 state: MODEL_STATE_FAILED
                           error: "weights: expected 9 bytes, got 7" }
-                 skipped_folders { folder: "sbu/01" reason: "is no version" })",
+                 skipped_folders { folder: "sbu/01" reason: "is no version" }
+                 problems: "access file: empty")",
               &admin_.models);
     grpc::ServerBuilder builder;
     builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
@@ -102,43 +103,21 @@ class AdminCommandTest : public ::testing::Test {
   std::ostringstream err_;
 };
 
-TEST_F(AdminCommandTest, AVersionIsAWholeNumber) {
-  for (const char* action : {"load", "unload"}) {
-    for (const char* version : {"x", "-1", "0", "1.5", "99999999999"}) {
-      EXPECT_EQ(Run({action, "sbu", version}), kExitUsage);
-      EXPECT_THAT(err_.str(), HasSubstr("version: expected 1 to 4294967295")) << version;
-    }
-  }
-}
-
-TEST_F(AdminCommandTest, ListsModels) {
+TEST_F(AdminCommandTest, ListsModelsAsTextAndJson) {
   EXPECT_EQ(Run({"models"}), kExitDone);
   EXPECT_EQ(out_.str(),
-            "sbu/3  served, default, labels: canary\n"
+            "sbu/3  served (outdated: the files on disk were rejected), default, labels: canary\n"
+            "    weights: expected the SHA-256\n"
             "sbu/2  failed\n    weights: expected 9 bytes, got 7\n"
-            "sbu/01  skipped: is no version\n");
-}
-
-TEST_F(AdminCommandTest, ListsModelsAsJson) {
+            "sbu/01  skipped: is no version\n"
+            "problem: access file: empty\n");
   EXPECT_EQ(Run({"models", "--json"}), kExitDone);
   const auto json = nlohmann::json::parse(out_.str());
   EXPECT_EQ(json["models"][0]["state"], "served");
+  EXPECT_EQ(json["models"][0]["outdated"], true);
   EXPECT_EQ(json["models"][1]["error"], "weights: expected 9 bytes, got 7");
-  EXPECT_EQ(json["models"][0]["outdated"], false);
-  EXPECT_TRUE(json["problems"].empty());
+  EXPECT_EQ(json["problems"][0], "access file: empty");
   EXPECT_EQ(json["skipped_folders"][0]["folder"], "sbu/01");
-}
-
-TEST_F(AdminCommandTest, ShowsOutdatedAndRejectedModels) {
-  ParseText(R"(models { name: "sbu" version: 3 state: MODEL_STATE_SERVED is_default: true
-                        outdated: true error: "weights: expected 9 bytes, got 7" }
-               problems: "access file: empty")",
-            &admin_.models);
-  EXPECT_EQ(Run({"models"}), kExitDone);
-  EXPECT_EQ(out_.str(),
-            "sbu/3  served (outdated: the files on disk were rejected), default\n"
-            "    weights: expected 9 bytes, got 7\n"
-            "problem: access file: empty\n");
 }
 
 TEST_F(AdminCommandTest, PrintsTheReasonOfAFailure) {
@@ -168,6 +147,16 @@ TEST_F(AdminCommandTest, EachActionIsARequest) {
   }
 }
 
+TEST_F(AdminCommandTest, InvalidArgumentsAreRejected) {
+  for (const char* version : {"x", "-1", "0", "1.5", "99999999999"}) {
+    EXPECT_EQ(Run({"load", "sbu", version}), kExitUsage);
+    EXPECT_THAT(err_.str(), HasSubstr("version: expected 1 to 4294967295")) << version;
+  }
+  const std::vector<std::string> cases[] = {
+      {}, {"load", "sbu"}, {"label", "sbu", "canary"}, {"label", "sbu", "canary", "3", "--delete"}};
+  for (const auto& arguments : cases) EXPECT_EQ(Run(arguments), kExitUsage);
+}
+
 TEST_F(AdminCommandTest, IncompleteReloadIsReported) {
   ParseText(R"(loaded: "sbu/4" refused: "sbu/5" unloaded: "sbu/1" unchanged_count: 2
                problems: "no label")",
@@ -175,14 +164,6 @@ TEST_F(AdminCommandTest, IncompleteReloadIsReported) {
   EXPECT_EQ(Run({"reload"}), kExitRetry);
   EXPECT_EQ(out_.str(),
             "loaded: sbu/4\nrefused: sbu/5\nunloaded: sbu/1\nunchanged: 2\nproblem: no label\n");
-}
-
-TEST_F(AdminCommandTest, ActionAndItsArgumentsAreRequired) {
-  EXPECT_EQ(Run({}), kExitUsage);
-  EXPECT_EQ(Run({"load", "sbu"}), kExitUsage);
-  EXPECT_EQ(Run({"load", "sbu", "three"}), kExitUsage);
-  EXPECT_EQ(Run({"label", "sbu", "canary"}), kExitUsage);
-  EXPECT_EQ(Run({"label", "sbu", "canary", "3", "--delete"}), kExitUsage);
 }
 
 }  // namespace

@@ -61,8 +61,7 @@ TEST_F(MotionCommandsTest, InspectPrintsEachSettingAndItsOrigin) {
                                            "  unit        centimetres  (guessed: foot to torso"));
   EXPECT_THAT(out(), AllOf(HasSubstr("  up axis     y-up  (guessed"),
                            HasSubstr("    left_hand       left_hand\n"),
-                           HasSubstr("    not used: torso_to_neck"),
-                           HasSubstr("    ok   limb lengths"), Not(HasSubstr("\x1b"))));
+                           HasSubstr("    not used: torso_to_neck"), Not(HasSubstr("\x1b"))));
   ASSERT_EQ(Run({"inspect", Path("one.bvh"), "--metres-per-unit", "0.01", "--up-axis", "y-up",
                  "--frame-rate", "60"}),
             0);
@@ -123,7 +122,7 @@ TEST_F(MotionCommandsTest, InspectPrintsEachOfTwoPeople) {
   ASSERT_EQ(Run({"inspect", Path("pair.csv")}), 0);
   EXPECT_THAT(out(), AllOf(HasSubstr(": CSV, 2 people, 60 frames"),
                            HasSubstr("  left person\n  frame rate  30 Hz  (file)\n"),
-                           HasSubstr("  right person\n  read as the other\n  skeleton\n")));
+                           HasSubstr("  right person\n  read as the other\n  tilt")));
 }
 
 TEST_F(MotionCommandsTest, InspectPrintsJson) {
@@ -140,8 +139,6 @@ TEST_F(MotionCommandsTest, InspectPrintsJson) {
   EXPECT_EQ(person["unit"]["origin"], "guessed");
   EXPECT_EQ(person["joints"][0]["joint"], "head");
   EXPECT_EQ(person["joints"][0]["parts"], json::parse(R"([{"joint": "head", "weight": 1.0}])"));
-  EXPECT_EQ(person["checks"][1]["name"], "size");
-  EXPECT_EQ(person["checks"][1]["good"], true);
 }
 
 TEST_F(MotionCommandsTest, InspectPrintsTheTiltOfEachFileAndOfAllTogether) {
@@ -191,8 +188,7 @@ TEST_F(MotionCommandsTest, InspectReadsAFileWithoutAFrameRate) {
   ASSERT_EQ(Run({"inspect", Path("one.npy")}), 0);
   EXPECT_THAT(out(), AllOf(HasSubstr("NPY, 1 person, 60 frames\n"),
                            HasSubstr("frame rate  unknown; specify it with --frame-rate HZ\n"),
-                           HasSubstr("unit        metres  (default)\n"), HasSubstr("ok   sides"),
-                           Not(HasSubstr("jumps"))));
+                           HasSubstr("unit        metres  (default)\n")));
   EXPECT_EQ(RunJson({"inspect", "--json", Path("one.npy")})["files"][0]["people"][0]["frame_rate"],
             nullptr);
 }
@@ -202,17 +198,6 @@ TEST_F(MotionCommandsTest, InspectContinuesAfterAnUnreadableFile) {
   EXPECT_EQ(Run({"inspect", Path("empty.bvh"), Path("no.csv"), Path("one.csv")}), 42);
   EXPECT_THAT(out(), AllOf(HasSubstr("empty.bvh:1: expected HIERARCHY"),
                            HasSubstr("no.csv: no such file"), HasSubstr("CSV, 1 person")));
-}
-
-TEST_F(MotionCommandsTest, InspectReportsPeopleOfDifferentLengths) {
-  Write("pair.json", Format::kJson, {leader_, follower_});
-  json pair = json::parse(ReadTestFile(folder_ / "pair.json"));
-  pair["follower"].erase(pair["follower"].begin() + 5, pair["follower"].end());
-  WriteTestFile(folder_ / "uneven.json", pair.dump());
-  ASSERT_EQ(Run({"inspect", Path("uneven.json")}), 0);
-  EXPECT_THAT(out(), AllOf(HasSubstr("2 people, 60 frames"), HasSubstr("  length      5 frames")));
-  ASSERT_EQ(Run({"inspect", Path("pair.json")}), 0);
-  EXPECT_THAT(out(), Not(HasSubstr("  length  ")));
 }
 
 TEST_F(MotionCommandsTest, EveryReadableFormatConvertsToEveryWritableFormat) {
@@ -250,8 +235,6 @@ TEST_F(MotionCommandsTest, ConvertTakesOnePersonOrBoth) {
   ASSERT_EQ(Run({"convert", Path("pair.csv"), "--side", "right", "--out", Path("r.bvh")}), 0);
   EXPECT_LT(LargestDistance(Read("r.bvh"), follower_), 1e-4f);
   EXPECT_FALSE(Exists("r.leader.bvh"));
-  ASSERT_EQ(Run({"convert", Path("one.csv"), "--side", "right", "--out", Path("r.csv")}), 0);
-  EXPECT_EQ(ReadTestFile(folder_ / "r.csv"), ReadTestFile(folder_ / "one.csv"));
 }
 
 TEST_F(MotionCommandsTest, ConvertWritesAPersonOntoARig) {
@@ -278,40 +261,30 @@ TEST_F(MotionCommandsTest, ConvertWritesAPersonOntoARig) {
 }
 
 TEST_F(MotionCommandsTest, InvalidUseOfARigIsReported) {
-  const auto fails = [this](const Strings& more, int code, const std::string& message) {
-    Strings arguments = {"convert", Path("pair.csv")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(Run(arguments), code) << out();
+  const std::string rig = Path("one.bvh"), crab = Path("crab.bvh");
+  WriteTestFile(crab, absl::StrReplaceAll(ReadTestFile(rig), {{"_hand", "_claw"}}));
+  const struct {
+    Strings more;
+    int code;
+    const char* message;
+  } cases[] = {
+      {{"--rig", rig, "--out", Path("a.bvh")}, 42, "--side: expected left or right with --rig"},
+      {{"--rig", rig, "--side", "left", "--out", Path("a.csv")}, 2, "expected the format of --rig"},
+      {{"--rig", Path("one.csv"), "--side", "left", "--out", Path("a.bvh")},
+       2,
+       "--rig: expected a .bvh, "},
+      {{"--rig-joint-map", "head=Top", "--side", "left", "--out", Path("a.bvh")}, 2, "--rig"},
+      {{"--rig", Path("no.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42, "no.bvh"},
+      {{"--rig", rig, "--rig-joint-map", "head=Nobody", "--side", "left", "--out", Path("a.bvh")},
+       42,
+       "Nobody"},
+      {{"--rig", crab, "--side", "left", "--out", Path("a.bvh")},
+       42,
+       "\nSpecify it with --rig-joint-map MODEL_JOINT=RIG_JOINT, or a table of them with"}};
+  for (const auto& [more, code, message] : cases) {
+    EXPECT_EQ(Run(Strings{"convert", Path("pair.csv")} + more), code) << out();
     EXPECT_THAT(err(), HasSubstr(message));
-  };
-  const std::string rig = Path("one.bvh");
-  fails({"--rig", rig, "--out", Path("a.bvh")}, 42, "--side: expected left or right with --rig");
-  fails({"--rig", rig, "--side", "left", "--out", Path("a.csv")}, 2,
-        "--out: expected the format of --rig");
-  fails({"--rig", Path("one.csv"), "--side", "left", "--out", Path("a.bvh")}, 2,
-        "--rig: expected a .bvh, ");
-  fails({"--rig-joint-map", "head=Top", "--side", "left", "--out", Path("a.bvh")}, 2, "--rig");
-  fails({"--rig", Path("absent.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42, "absent.bvh");
-  fails({"--rig", rig, "--rig-joint-map", "head=Nobody", "--side", "left", "--out", Path("a.bvh")},
-        42, "Nobody");
-  std::string crab = ReadTestFile(rig);
-  for (size_t at = 0; (at = crab.find("_hand", at)) != std::string::npos;)
-    crab.replace(at, 5, "_claw");
-  WriteTestFile(Path("crab.bvh"), crab);
-  fails({"--rig", Path("crab.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42,
-        "\nSpecify it with --rig-joint-map MODEL_JOINT=RIG_JOINT, or a table of them with");
-}
-
-TEST_F(MotionCommandsTest, TheUnitOfAHierarchyCanBeNamed) {
-  ASSERT_EQ(Run({"convert", Path("one.bvh"), "--unit", "millimetres", "--out", Path("small.csv")}),
-            0)
-      << err();
-  const motion::Clip small = Read("small.csv");
-  EXPECT_LT(Distance(small.at(9, 4) * 10, leader_.at(9, 4)), 0.01F) << "the file has centimetres";
-  ASSERT_EQ(Run({"convert", Path("one.bvh"), "--unit", "millimetres", "--metres-per-unit", "0.01",
-                 "--out", Path("same.csv")}),
-            0);
-  EXPECT_LT(Distance(Read("same.csv").at(9, 4), leader_.at(9, 4)), 0.01F);
+  }
 }
 
 TEST_F(MotionCommandsTest, AGiantIsWarnedOf) {
@@ -372,16 +345,6 @@ TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {
   EXPECT_THAT(ReadTestFile(folder_ / "view.html"),
               AllOf(StartsWith("<!doctype html>"), HasSubstr("<title>Tuesday<")));
   EXPECT_EQ(Run({"view", Path("one.bvh"), "--out", Path("view.csv")}), 2);
-}
-
-TEST_F(MotionCommandsTest, LeaderSideChoosesWhoLeads) {
-  const auto page = [this](const std::string& side) {
-    EXPECT_EQ(Run({"view", Path("pair.csv"), "--leader-side", side, "--out", Path("view.html")}), 0)
-        << err();
-    return ReadTestFile(folder_ / "view.html");
-  };
-  EXPECT_EQ(page("left"), page("left"));
-  EXPECT_NE(page("left"), page("right"));
 }
 
 TEST_F(MotionCommandsTest, ViewFindsTheFollowerBesideALeader) {

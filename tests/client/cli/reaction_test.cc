@@ -103,23 +103,14 @@ TEST_F(RequestFileTest, HasEveryFieldOfARequestButTheLeader) {
   EXPECT_EQ(request->candidates, 4);
   EXPECT_TRUE(request->rotations);
   EXPECT_EQ(request->up, (motion::Vec3{0.1f, 1, 0}));
+  const auto pose = Read("follower_start { pose { positions: [1, 2, 3, 4, 5, 6] } }");
+  ASSERT_THAT(pose, IsOk());
+  EXPECT_THAT(std::get<1>(*pose->follower_start),
+              ElementsAre(motion::Vec3{1, 2, 3}, motion::Vec3{4, 5, 6}));
+  EXPECT_EQ(pose->clean_up, std::nullopt);
   ASSERT_THAT(request->constraints, SizeIs(1));
   EXPECT_EQ(request->constraints[0].position, (motion::Vec3{0, 1.5f, 0}));
   EXPECT_EQ(request->constraints[0].softness, 0.5f);
-}
-
-TEST_F(RequestFileTest, AbsentFieldsHaveTheirDefaults) {
-  const absl::StatusOr<SynthesisRequest> request = Read(
-      "label_vector { weights { interaction_class: 'hug' weight: 1 } }\n"
-      "follower_start { pose { positions: [1, 2, 3, 4, 5, 6] } }");
-  ASSERT_THAT(request, IsOk());
-  EXPECT_EQ(request->weights[0].interaction_class, "hug");
-  EXPECT_THAT(std::get<1>(*request->follower_start),
-              ElementsAre(motion::Vec3{1, 2, 3}, motion::Vec3{4, 5, 6}));
-  EXPECT_EQ(request->variety, 1);
-  EXPECT_EQ(request->candidates, 1);
-  EXPECT_EQ(request->clean_up, std::nullopt);
-  EXPECT_EQ(request->up, std::nullopt);
 }
 
 TEST_F(RequestFileTest, ErrorsNameTheFileAndThePlaceOrTheField) {
@@ -133,29 +124,6 @@ TEST_F(RequestFileTest, ErrorsNameTheFileAndThePlaceOrTheField) {
     EXPECT_THAT(Read(text), StatusIs(kInvalid, HasSubstr(message))) << text;
   }
   EXPECT_THAT(ReadRequestFile(folder_ / "no"), StatusIs(absl::StatusCode::kNotFound, _));
-}
-
-TEST_F(RequestFileTest, FlagsOverrideIt) {
-  test::WriteTestFile(file_,
-                      "seed: 1 variety: 0.5 candidates: 2 model { name: 'sbu' } "
-                      "label_vector { weights { interaction_class: 'hug' weight: 1 } }");
-  ReactionArguments arguments;
-  arguments.request = file_;
-  EXPECT_EQ(StartRequest(arguments)->seed, 1u);
-  EXPECT_EQ(StartRequest(arguments)->weights[0].interaction_class, "hug");
-  arguments.seed = 2;
-  arguments.variety = 0;
-  arguments.candidates = 3;
-  arguments.model = ModelChoice{"k3hi", 1, ""};
-  arguments.keyframes = {{0, {{"kick", 1}}}};
-  const absl::StatusOr<SynthesisRequest> request = StartRequest(arguments);
-  ASSERT_THAT(request, IsOk());
-  EXPECT_EQ(request->seed, 2u);
-  EXPECT_EQ(request->variety, 0);
-  EXPECT_EQ(request->candidates, 3);
-  EXPECT_EQ(request->model.name, "k3hi");
-  EXPECT_TRUE(request->weights.empty()) << "keyframes replace the labels of the file";
-  EXPECT_THAT(request->keyframes, SizeIs(1));
 }
 
 }  // namespace

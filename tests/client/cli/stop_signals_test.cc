@@ -50,25 +50,5 @@ TEST_F(StopSignalsDeathTest, LaterSignalEndsTheProcessAtOnce) {
   EXPECT_EXIT(StopTwice(std::chrono::nanoseconds(-1)), ::testing::ExitedWithCode(kExitRetry), "");
 }
 
-TEST_F(StopSignalsDeathTest, SignalOfOneStopThatNobodyReadIsDropped) {
-  const auto stop = [] {
-    {
-      absl::Notification stopped, sent;
-      const StopSignals signals(
-          [&] {
-            stopped.Notify();
-            sent.WaitForNotification();
-          },
-          std::chrono::hours(1));
-      kill(getpid(), SIGINT);
-      stopped.WaitForNotification();
-      kill(getpid(), SIGTERM);
-      sent.Notify();
-    }
-    _exit(kEndedInOrder);
-  };
-  EXPECT_EXIT(stop(), ::testing::ExitedWithCode(kEndedInOrder), "");
-}
-
 }  // namespace
 }  // namespace duet::client::cli

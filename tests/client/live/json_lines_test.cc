@@ -5,6 +5,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -97,25 +98,6 @@ TEST(JsonLinesSourceTest, ReadsFramesAndLabels) {
   EXPECT_EQ(labels.weights[0].interaction_class, "hug");
   EXPECT_EQ(labels.weights[1].weight, -0.5F);
   EXPECT_EQ(labels.ease, absl::Milliseconds(300));
-}
-
-TEST(JsonLinesSourceTest, IgnoresTheByteOrderMarkOfAShell) {
-  EXPECT_THAT(Text("\xef\xbb\xbf" + Header() + Frame() + Frame()).Indices(),
-              ::testing::ElementsAre(0, 1));
-  EXPECT_THAT(Text(Header() + "\xef\xbb\xbf" + Frame()).ReadAll(),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("line 2: not a JSON object")))
-      << "a mark is only expected at the beginning";
-}
-
-TEST(JsonLinesSourceTest, JointsMayHaveOtherNamesAndAnotherOrder) {
-  std::vector<std::string> names(Joints().rbegin(), Joints().rend());
-  for (std::string& name : names) absl::StrReplaceAll({{"left_", "L"}, {"right_", "R"}}, &name);
-  std::vector<motion::Vec3> pose = SwayingPose(0);
-  std::reverse(pose.begin(), pose.end());
-  Text text(Header({{"joints", names}}) + Frame({{"positions", Rows(pose)}}));
-  const auto events = text.ReadAll();
-  ASSERT_THAT(events, IsOk());
-  EXPECT_EQ(std::get<LeaderFrame>((*events)[0]).positions, SwayingPose(0));
 }
 
 TEST(JsonLinesSourceTest, UnitsAndAxesAreConverted) {
@@ -214,6 +196,35 @@ TEST(JsonLinesSinkTest, AReaderThatIsGoneIsAnError) {
   LiveFrames frames;
   frames.poses = motion::Poses(15, SwayingPose(0));
   EXPECT_THAT(sink.Accept(frames), StatusIs(absl::StatusCode::kAborted, HasSubstr("cannot write")));
+}
+
+TEST(LineReaderTest, ReadsLinesAsTheyArrive) {
+  const test::Pipe pipe;
+  LineReader lines(pipe.reader());
+  pipe.Write("one\ntw");
+  EXPECT_EQ(*lines.Next(), "one");
+  pipe.Write("o\n\nthree");
+  EXPECT_EQ(*lines.Next(), "two");
+  EXPECT_EQ(*lines.Next(), "");
+  pipe.CloseWriter();
+  EXPECT_EQ(*lines.Next(), "three") << "without an end";
+  EXPECT_EQ(*lines.Next(), std::nullopt);
+}
+
+TEST(LineReaderTest, StopInterruptsAReaderThatWaits) {
+  const test::Pipe pipe;
+  LineReader lines(pipe.reader());
+  pipe.Write("half a li");
+  std::thread stopper([&lines] { lines.Stop(); });
+  EXPECT_EQ(*lines.Next(), std::nullopt);
+  stopper.join();
+  pipe.CloseWriter();
+}
+
+TEST(LineReaderTest, ALineIsNotEndless) {
+  const test::TextInput in(std::string(kMaxLineBytes + 100000, 'x'));
+  EXPECT_THAT(LineReader(in.descriptor()).Next(),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("at most 1048576 bytes")));
 }
 
 }  // namespace

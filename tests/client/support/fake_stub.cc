@@ -1,5 +1,7 @@
 #include "tests/client/support/fake_stub.h"
 
+#include <google/protobuf/text_format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -115,23 +117,18 @@ motion::Poses FollowerFor(const motion::Clip& leader) {
   return follower;
 }
 
-v1::SynthesizeResponse HeaderFor(const motion::Clip& leader, uint32_t version) {
+v1::SynthesizeResponse HeaderFor(const motion::Clip& leader) {
   v1::SynthesizeResponse response;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
+      R"(header {
+        model_name: "dancer" model_version: 1 unit: LENGTH_UNIT_METRES up_axis: UP_AXIS_Y_UP
+        interaction_classes: "kick" interaction_classes: "hug" request_id: "request-1"
+        seed: 18446744073709551615 variety: 0.5 candidates: 4 clean_up: CLEAN_UP_ON })",
+      &response));
   v1::SynthesisHeader* header = response.mutable_header();
-  header->set_model_name("dancer");
-  header->set_model_version(version);
   header->mutable_joint_names()->Assign(leader.joint_names.begin(), leader.joint_names.end());
   header->set_frame_rate_hz(leader.frame_rate_hz);
-  header->set_unit(v1::LENGTH_UNIT_METRES);
-  header->set_up_axis(v1::UP_AXIS_Y_UP);
   header->set_frame_count(static_cast<uint32_t>(leader.frame_count()));
-  header->add_interaction_classes("kick");
-  header->add_interaction_classes("hug");
-  header->set_request_id("request-1");
-  header->set_seed(18446744073709551615u);
-  header->set_variety(0.5F);
-  header->set_candidates(4);
-  header->set_clean_up(v1::CLEAN_UP_ON);
   return response;
 }
 

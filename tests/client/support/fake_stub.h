@@ -62,7 +62,7 @@ struct FakeTime {
 motion::Clip ThreeJointLeader(int frames);
 
 // The messages of a good reply to `leader`: the follower is the leader moved by one metre in x.
-v1::SynthesizeResponse HeaderFor(const motion::Clip& leader, uint32_t version = 1);
+v1::SynthesizeResponse HeaderFor(const motion::Clip& leader);
 v1::SynthesizeResponse ChunkFor(const motion::Clip& leader, int first_frame, int frames);
 v1::SynthesizeResponse SummaryFor(const motion::Clip& leader, int chunks);
 // Header, chunks of `chunk_frames`, summary.

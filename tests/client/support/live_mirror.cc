@@ -169,9 +169,7 @@ v1::SynthesizeLiveResponse HeaderFor(const v1::LiveStart& start, const LiveMirro
   header->set_unit(v1::LENGTH_UNIT_METRES);
   header->set_up_axis(v1::UP_AXIS_Y_UP);
   header->add_interaction_classes("hug");
-  header->set_request_id("live-1");
   header->set_seed(start.seed());
-  header->set_variety(start.variety());
   header->set_clean_up(v1::CLEAN_UP_ON);
   header->set_candidates(start.candidates());
   header->set_delay_frames(start.delay_frames());

@@ -26,6 +26,23 @@ class TextInput {
   const int descriptor_;
 };
 
+// A pipe whose writer a test closes.
+class Pipe {
+ public:
+  Pipe() { EXPECT_EQ(pipe(ends_), 0); }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() { close(ends_[0]); }
+  void Write(const std::string& text) const {
+    EXPECT_EQ(write(ends_[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  void CloseWriter() const { close(ends_[1]); }
+  int reader() const { return ends_[0]; }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
 }  // namespace duet::test
 
 #endif  // DUET_TESTS_CLIENT_SUPPORT_TEXT_INPUT_H_
