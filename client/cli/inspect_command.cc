@@ -13,7 +13,6 @@
 #include "client/cli/command.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/report.h"
-#include "client/cli/skeleton_check.h"
 #include "model/base/counted.h"
 #include "model/base/printable.h"
 #include "model/formats/motion_file.h"
@@ -35,7 +34,6 @@ constexpr std::size_t kMaxNames = 12;
 struct InspectedPerson {
   retargeting::ReadingReport report;
   motion::Clip clip;  // at 0 Hz where no rate is known
-  std::vector<SkeletonCheck> checks;
 };
 
 // What is known of a file. If it cannot be read, `status` says why, and the one person has what was
@@ -102,15 +100,6 @@ std::string DescribeReading(const retargeting::ReadingReport& report) {
   return text + DescribeUnused(report);
 }
 
-std::string DescribeChecks(const std::vector<SkeletonCheck>& checks) {
-  std::string text = "  skeleton\n";
-  for (const SkeletonCheck& check : checks) {
-    absl::StrAppendFormat(&text, "    %s %-13s %s\n", check.good ? "ok  " : "look", check.name,
-                          check.text);
-  }
-  return text;
-}
-
 std::string DescribeLength(const motion::Clip& clip) {
   const int frames = clip.frame_count();
   std::string text = base::Counted(frames, "frame");
@@ -151,13 +140,10 @@ json JointJson(const JointReading& joint) {
 }
 
 json PersonJson(const InspectedPerson& person) {
-  json joints = json::array(), checks = json::array(), missing = json::array();
+  json joints = json::array(), missing = json::array();
   for (const JointReading& joint : person.report.joints) {
     joints.push_back(JointJson(joint));
     if (joint.parts.empty()) missing.push_back(joint.joint);
-  }
-  for (const SkeletonCheck& check : person.checks) {
-    checks.push_back({{"name", check.name}, {"good", check.good}, {"text", check.text}});
   }
   return {{"frame_rate", SettingJson(person.report.frame_rate)},
           {"unit", SettingJson(person.report.unit)},
@@ -165,8 +151,7 @@ json PersonJson(const InspectedPerson& person) {
           {"remarks", person.report.remarks},
           {"file_joints", person.report.file_joints},
           {"joints", joints},
-          {"missing_joints", missing},
-          {"checks", checks}};
+          {"missing_joints", missing}};
 }
 
 std::string DescribeVertical(const motion::VerticalEstimate& vertical) {
@@ -213,7 +198,6 @@ std::string DescribeInspection(const Inspection& inspection) {
     const std::string reading = DescribeReading(person.report);
     const bool repeated = i > 0 && reading == DescribeReading(first);
     absl::StrAppend(&text, repeated ? "  read as the other\n" : reading);
-    if (!person.checks.empty()) absl::StrAppend(&text, DescribeChecks(person.checks));
   }
   if (inspection.vertical) {
     absl::StrAppend(&text, "  tilt        ", DescribeVertical(*inspection.vertical), "\n");
@@ -274,7 +258,6 @@ absl::Status InspectPerson(const std::filesystem::path& file, formats::ReadOptio
   absl::StatusOr<motion::Clip> clip = ReadAtAnyRate(file, options);
   if (!clip.ok()) return clip.status();
   person->clip = *std::move(clip);
-  person->checks = CheckSkeleton(person->clip, options.skeleton);
   return absl::OkStatus();
 }
 
@@ -350,8 +333,8 @@ void AddFlags(CLI::App* command, InspectArguments* arguments) {
 
 Command AddInspectCommand(CLI::App* program) {
   const auto arguments = std::make_shared<InspectArguments>();
-  CLI::App* app = program->add_subcommand(
-      "inspect", "Print what motion files contain, how Duet reads them, and what looks wrong");
+  CLI::App* app =
+      program->add_subcommand("inspect", "Print what motion files contain and how Duet reads them");
   app->footer(R"(
 Examples:
   duet inspect walk.bvh
