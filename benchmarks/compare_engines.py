@@ -19,7 +19,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 BATCHES = (1, 8, 32, 64)
-ENGINES = ("int16", "bf16", "f32", "torch")
+ENGINES = ("int16", "f32", "torch")
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", MKL_NUM_THREADS="1")
 
 
@@ -58,7 +58,7 @@ def processor():
     name = next(line.split(":")[1].strip() for line in info.splitlines()
                 if line.startswith("model name"))
     flags = next(line for line in info.splitlines() if line.startswith("flags")).split()
-    has = [flag for flag in ("avx2", "avx512f", "avx512_bf16", "avx512_vnni", "amx_bf16") if flag in flags]
+    has = [flag for flag in ("avx2", "avx512f", "avx512_vnni") if flag in flags]
     return f"{name}, {os.cpu_count()} cores, {' '.join(has)}"
 
 

@@ -6,8 +6,6 @@
 
 #include "model/base/random.h"
 #include "model/cpu_engine/kernels/additive_attention.h"
-#include "model/cpu_engine/kernels/gemm_bf16.h"
-#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
 #include "model/cpu_engine/kernels/lstm_cell.h"
 #include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/cpu_engine/kernels/rowwise.h"
@@ -30,20 +28,7 @@ void PerSecond(benchmark::State& state, const char* what, double count) {
 }
 
 // Arguments: rows, inputs, outputs.
-void Product(benchmark::State& state, Precision precision, Bf16Product product) {
-  if (precision == Precision::kBfloat16 && !HasBf16()) {
-    state.SkipWithError("this processor does not multiply bfloat16");
-    return;
-  }
-  if (precision == Precision::kInt16 && !HasInt16()) {
-    state.SkipWithError("this processor does not multiply integers of 16 bits (AVX-512 VNNI)");
-    return;
-  }
-  if (product == Bf16Product::kAmx && !HasAmx()) {
-    state.SkipWithError("this processor does not multiply tiles (AMX)");
-    return;
-  }
-  ChooseBf16Product(product);
+void Product(benchmark::State& state, Precision precision) {
   const int rows = static_cast<int>(state.range(0)), inputs = static_cast<int>(state.range(1)),
             outputs = static_cast<int>(state.range(2));
   const PackedMatrix matrix(Values(std::ptrdiff_t{outputs} * inputs), {}, outputs, inputs,
@@ -54,7 +39,6 @@ void Product(benchmark::State& state, Precision precision, Bf16Product product) 
     matrix.Multiply(rows, x.data(), y.data());
     benchmark::ClobberMemory();
   }
-  ChooseBf16Product(Bf16Product::kBest);
   PerSecond(state, "FLOP/s", 2.0 * rows * inputs * outputs);
 }
 void Sizes(benchmark::internal::Benchmark* bench) {
@@ -64,10 +48,8 @@ void Sizes(benchmark::internal::Benchmark* bench) {
   bench->Args({720, 480, 960});                                          // the decoder's values
   bench->Args({45, 160, 480})->Args({720, 160, 480})->Args({720, 480, 160});  // the transformer's
 }
-BENCHMARK_CAPTURE(Product, f32, Precision::kFloat32, Bf16Product::kBest)->Apply(Sizes);
-BENCHMARK_CAPTURE(Product, int16, Precision::kInt16, Bf16Product::kBest)->Apply(Sizes);
-BENCHMARK_CAPTURE(Product, bf16, Precision::kBfloat16, Bf16Product::kAvx512)->Apply(Sizes);
-BENCHMARK_CAPTURE(Product, bf16_amx, Precision::kBfloat16, Bf16Product::kAmx)->Apply(Sizes);
+BENCHMARK_CAPTURE(Product, f32, Precision::kFloat32)->Apply(Sizes);
+BENCHMARK_CAPTURE(Product, int16, Precision::kInt16)->Apply(Sizes);
 
 // One decoder state over a window of 45 frames.
 constexpr int kFrames = 45, kAttention = 128, kGates = 960;
@@ -94,25 +76,6 @@ void BM_AddWeighted(benchmark::State& state) {
   PerSecond(state, "FLOP/s", 2.0 * kFrames * kGates);
 }
 BENCHMARK(BM_AddWeighted);
-
-void BM_AddWeightedBf16(benchmark::State& state) {
-  if (!HasBf16()) {
-    state.SkipWithError("this processor does not multiply bfloat16");
-    return;
-  }
-  const std::vector<float> values = Values(kFrames * kGates), weights = Values(kFrames);
-  std::vector<float> sums(kGates);
-  std::vector<uint16_t> panels(
-      static_cast<std::size_t>(PanelCount(kGates) * Bf16Pairs(kFrames) * kPanel * 2));
-  PackRowsBf16({values.data(), kGates, kFrames, kGates}, panels.data());
-  for (auto _ : state) {
-    AddGemmBf16({weights.data(), kFrames, 1, kFrames}, panels.data(),
-                {sums.data(), kGates, kGates});
-    benchmark::ClobberMemory();
-  }
-  PerSecond(state, "FLOP/s", 2.0 * kFrames * kGates);
-}
-BENCHMARK(BM_AddWeightedBf16);
 
 void BM_LstmCells(benchmark::State& state) {
   constexpr int kRows = 16, kHidden = 240;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "model/cpu_engine/kernels/additive_attention.h"
-#include "model/cpu_engine/kernels/gemm_bf16.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -46,19 +45,6 @@ __attribute__((target("avx2,fma"))) float MultiplyAdd256() {
   return _mm256_cvtss_f32(sums[0]);
 }
 
-__attribute__((target("avx512f,avx512bf16"))) float DotBf16() {
-  __m512 sums[kSums] = {};
-  const __m512bh factor = (__m512bh)_mm512_set1_epi16(0x3f00);  // 0.5
-  for (int round = 0; round < kRounds; ++round) {
-    for (__m512& sum : sums) sum = _mm512_dpbf16_ps(sum, factor, factor);
-    benchmark::ClobberMemory();
-  }
-  for (int i = 1; i < kSums; ++i) sums[0] = _mm512_add_ps(sums[0], sums[i]);
-  float total[16];
-  _mm512_storeu_ps(total, sums[0]);
-  return total[0];
-}
-
 void BM_MultiplyAddFloat32(benchmark::State& state) {
   const bool wide = __builtin_cpu_supports("avx512f");
   if (!wide && !__builtin_cpu_supports("fma")) {
@@ -69,16 +55,6 @@ void BM_MultiplyAddFloat32(benchmark::State& state) {
   PerSecond(state, "FLOP/s", 2.0 * (wide ? 16 : 8) * kSums * kRounds);
 }
 BENCHMARK(BM_MultiplyAddFloat32);
-
-void BM_DotBfloat16(benchmark::State& state) {
-  if (!duet::cpu_engine::kernels::HasBf16()) {
-    state.SkipWithError("this processor does not multiply bfloat16");
-    return;
-  }
-  for (auto _ : state) benchmark::DoNotOptimize(DotBf16());
-  PerSecond(state, "FLOP/s", 2.0 * 32 * kSums * kRounds);
-}
-BENCHMARK(BM_DotBfloat16);
 #endif
 
 // Argument: kilobytes; 32 fit the first-level cache, 512 the second.

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "model/cpu_engine/cpu_synthesizer.h"
-#include "model/cpu_engine/kernels/gemm_bf16.h"
-#include "model/cpu_engine/kernels/gemm_int16.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
@@ -135,18 +133,10 @@ int main(int argc, char** argv) {
   }
   const Models torch = Loaded(duet::torch_engine::LoadEmbeddedSynthesizers());
   const Models f32 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kFloat32}));
+  const Models int16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kInt16}));
   Register("torch", torch);
   Register("f32", f32);
-  Models bf16;
-  if (duet::cpu_engine::kernels::HasBf16()) {
-    bf16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kBfloat16}));
-    Register("bf16", bf16);
-  }
-  Models int16;
-  if (duet::cpu_engine::kernels::HasInt16()) {
-    int16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kInt16}));
-    Register("int16", int16);
-  }
+  Register("int16", int16);
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -93,7 +93,7 @@ struct SynthesisResult {
   float variety = 0;                             // used by the server
   int candidates = 1;                            // samples that the model drew for each window
   bool cleaned_up = false;                       // the server cleaned up the follower
-  // How the server computes, as "cpu, bf16, AVX-512", and its version. Empty: it does not state
+  // How the server computes, as "cpu, int16, AVX-512", and its version. Empty: it does not state
   // them.
   std::string engine;
   std::string server_version;

@@ -5,8 +5,7 @@
 #include <variant>
 
 #include "model/cpu_engine/flow_network.h"
-#include "model/cpu_engine/kernels/gemm_bf16.h"
-#include "model/cpu_engine/kernels/gemm_int16.h"
+#include "model/cpu_engine/kernels/gemm.h"
 #include "model/cpu_engine/paper_network.h"
 #include "model/cpu_engine/scratch.h"
 
@@ -76,8 +75,7 @@ class CpuNetwork : public engine::Network {
 }  // namespace
 
 kernels::Precision BestPrecision() {
-  if (kernels::HasInt16()) return kernels::Precision::kInt16;
-  return kernels::IsBf16Faster() ? kernels::Precision::kBfloat16 : kernels::Precision::kFloat32;
+  return kernels::IsInt16Faster() ? kernels::Precision::kInt16 : kernels::Precision::kFloat32;
 }
 
 std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoint& checkpoint,

@@ -10,16 +10,14 @@
 
 namespace duet::cpu_engine {
 
-// The fastest on this processor: integers of 16 bits (kernels::HasInt16), else bfloat16 if that is
-// faster (kernels::IsBf16Faster), else float32. Where both are fast, integers are the closer ones.
+// The fastest on this processor (kernels::IsInt16Faster).
 kernels::Precision BestPrecision();
 
 // Runs a checkpoint's generator, of any architecture, in this project's own kernels.
 //
 // A window's answer is bit-identical whatever else is in the batch. Large batches are evaluated in
 // parts, which bounds the memory of a thread; the thread keeps it for the next batch
-// (ThreadScratchBytes). bfloat16 is slow without kernels::HasBf16(), and kInt16
-// without kernels::HasInt16().
+// (ThreadScratchBytes).
 std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoint& checkpoint,
                                                       kernels::Precision precision);
 

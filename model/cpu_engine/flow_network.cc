@@ -59,21 +59,17 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
   frames_ = layer("frames", Precision::kFloat32);
   sample_ = weights.FindLayer("sample.weight", "").Pack(Precision::kFloat32);
   start_ = layer("start", Precision::kFloat32);
-  // In these, bfloat16 would exceed the bound of docs/cpu_engine.md.
-  const Precision fine = precision == Precision::kBfloat16 ? Precision::kFloat32 : precision;
   if (!flow_.frame_labels) label_ = weights.FindLayer("label.weight", "");
-  time_expand_ = layer("time.expand", fine);
-  time_mix_ = layer("time.mix", fine);
-  condition_ = layer("condition", fine);
+  time_expand_ = layer("time.expand", precision);
+  time_mix_ = layer("time.mix", precision);
+  condition_ = layer("condition", precision);
   norm_ = {weights.Values("norm.weight"), weights.Values("norm.bias"), width_, 1};
-  output_ = layer("output", fine);
+  output_ = layer("output", precision);
   for (int i = 0; i < flow_.blocks; ++i) {
     const std::string block = absl::StrCat("block", i, ".");
-    blocks_.push_back({layer(block + "modulation", fine), layer(block + "attention", fine),
-                       layer(block + "attended", fine), layer(block + "expand", precision),
-                       // The rounding error of the first block passes through all others: float32
-                       // in the place of bfloat16 halves the error of the answer.
-                       layer(block + "contract", i == 0 ? fine : precision),
+    blocks_.push_back({layer(block + "modulation", precision),
+                       layer(block + "attention", precision), layer(block + "attended", precision),
+                       layer(block + "expand", precision), layer(block + "contract", precision),
                        weights.Values(block + "distance")});
   }
 }

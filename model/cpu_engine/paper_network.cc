@@ -6,7 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/cpu_engine/kernels/additive_attention.h"
-#include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/lstm_cell.h"
 
 namespace duet::cpu_engine {
@@ -108,8 +107,7 @@ PaperNetwork::PaperNetwork(const checkpoint::Checkpoint& checkpoint, Precision p
                           .Pack(precision),
                       weights.Values(at("attention_score"))};
   }
-  output_ = weights.FindLayer("output").Pack(precision == Precision::kBfloat16 ? Precision::kFloat32
-                                                                               : precision);
+  output_ = weights.FindLayer("output").Pack(precision);
   if (!has_base_) return;
   base_.bias = weights.Values("base.bias");
   if (weights.Has("base.weight")) base_ = weights.FindLayer("base");
@@ -128,8 +126,7 @@ PaperNetwork::Slice PaperNetwork::FindSlice(const checkpoint::Manifest& manifest
     if (weights.Has(at + "fc.weight")) input[d] = Chained(weights.FindLayer(at + "fc"), input[d]);
     slice.recurrent[d] = weights.FindLayer(prefix + "weight_hh", "").Pack(precision_);
   }
-  slice.input = Stacked(input[0], input[1])
-                    .Pack(precision_ == Precision::kBfloat16 ? Precision::kFloat32 : precision_);
+  slice.input = Stacked(input[0], input[1]).Pack(precision_);
   return slice;
 }
 
@@ -240,11 +237,6 @@ PaperNetwork::DecoderWork PaperNetwork::PrepareDecoder(const WindowBatch& batch,
   DecoderWork work{};
   work.encoded = scratch->Take<float>(rows * attention_);
   work.values = scratch->Take<float>(rows * width);
-  if (precision_ == Precision::kBfloat16) {
-    work.packed_window = std::ptrdiff_t{kernels::Bf16Pairs(batch.length[0])} * 2 * kernels::kPanel *
-                         kernels::PanelCount(4 * state_);
-    work.packed = scratch->Take<uint16_t>(windows * work.packed_window);
-  }
   work.gates = scratch->Take<float>(windows * (width + attention_));
   work.weights = scratch->Take<float>(batch.length[0]);
   work.outputs = scratch->Take<float*>(windows);
@@ -261,11 +253,6 @@ void PaperNetwork::Decode(const Work& work, const WindowBatch& batch, int direct
   const float* const encoded = work.encoded + std::ptrdiff_t{batch.first_row[0]} * 2 * state_;
   weights.encoded.Multiply(batch.rows, encoded, decoder.encoded);
   weights.values.Multiply(batch.rows, encoded, decoder.values);
-  for (int n = 0; n < batch.count && decoder.packed != nullptr; ++n) {
-    const std::ptrdiff_t row = batch.first_row[n] - batch.first_row[0];
-    kernels::PackRowsBf16({decoder.values + row * width, width, batch.length[n], width},
-                          decoder.packed + n * decoder.packed_window);
-  }
   kernels::LstmStep cells{batch.count,
                           state_,
                           decoder.gates,
@@ -296,13 +283,8 @@ void PaperNetwork::LookAt(const WindowBatch& batch, int n, int direction,
   const int width = 4 * state_, frames = batch.length[n];
   kernels::WeighFrames({frames, attention_, decoder.encoded + row * attention_, gates + width,
                         directions_[direction].score.data(), decoder.weights});
-  if (decoder.packed == nullptr) {
-    kernels::AddWeighted({decoder.values + row * width, width, frames, width}, decoder.weights,
-                         gates);
-  } else {
-    kernels::AddGemmBf16({decoder.weights, frames, 1, frames},
-                         decoder.packed + n * decoder.packed_window, {gates, width, width});
-  }
+  kernels::AddWeighted({decoder.values + row * width, width, frames, width}, decoder.weights,
+                       gates);
 }
 
 // Adds the base pose: the root and the pose relative to it, each from the follower's start if that

@@ -2,7 +2,6 @@
 #define DUET_MODEL_CPU_ENGINE_PAPER_NETWORK_H_
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -60,13 +59,11 @@ class PaperNetwork {
 
   // The values of one direction of the decoder for some windows.
   struct DecoderWork {
-    float* encoded;                // [rows, A] U h
-    float* values;                 // [rows, 4 H]
-    uint16_t* packed;              // the values for products in bfloat16; null in float32
-    std::ptrdiff_t packed_window;  // values from one window to the next
-    float* gates;                  // [windows, 4 H + A], gates, then the query
-    float* weights;                // [T] of the current window
-    float** outputs;               // [windows]
+    float* encoded;   // [rows, A] U h
+    float* values;    // [rows, 4 H]
+    float* gates;     // [windows, 4 H + A], gates, then the query
+    float* weights;   // [T] of the current window
+    float** outputs;  // [windows]
   };
 
   Slice FindSlice(const checkpoint::Manifest& manifest, const Weights& weights, int index) const;

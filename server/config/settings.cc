@@ -378,8 +378,7 @@ void ReadThreads(const ServerConfig& given, int cores, ServerConfig* values, Mis
 }
 
 void ReadEngine(const ServerConfig& given, int cores, ServerConfig* values, Mistakes& mistakes) {
-  if (values->engine() == v1::ENGINE_TORCH &&
-      (values->precision() == v1::PRECISION_BF16 || values->precision() == v1::PRECISION_INT16)) {
+  if (values->engine() == v1::ENGINE_TORCH && values->precision() == v1::PRECISION_INT16) {
     mistakes.Add("precision", "PRECISION_F32 with ENGINE_TORCH",
                  v1::Precision_Name(values->precision()));
   }

@@ -13,9 +13,6 @@
 #include "duet/v1/server_config.pb.h"
 #include "model/base/program_output.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
-#include "model/cpu_engine/kernels/gemm_bf16.h"
-#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
-#include "model/cpu_engine/kernels/gemm_int16.h"
 #include "model/cpu_engine/kernels/instruction_set.h"
 #include "model/torch_plugin/torch_plugin.h"
 #include "server/lifecycle/process_end.h"
@@ -43,39 +40,15 @@ absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> Shared(AllLoaded
                                                          std::make_move_iterator(models->end()));
 }
 
-const char* NameOf(Precision precision) {
-  switch (precision) {
-    case Precision::kFloat32:
-      return "f32";
-    case Precision::kBfloat16:
-      return duet::cpu_engine::kernels::HasAmx() ? "bf16 (AMX)" : "bf16";
-    case Precision::kInt16:
-      return "int16";
-  }
-  return "";
-}
-
 absl::StatusOr<ModelSource> OpenCpuEngine(const ServerConfig& settings) {
   CpuEngineOptions engine;
   if (settings.precision() == duet::v1::PRECISION_F32) {
     engine.precision = Precision::kFloat32;
-  } else if (settings.precision() == duet::v1::PRECISION_BF16) {
-    if (!duet::cpu_engine::kernels::HasBf16()) {
-      return absl::InvalidArgumentError(
-          "precision: expected PRECISION_F32, got PRECISION_BF16; this processor does not multiply "
-          "bfloat16 (AVX-512 BF16)");
-    }
-    engine.precision = Precision::kBfloat16;
   } else if (settings.precision() == duet::v1::PRECISION_INT16) {
-    if (!duet::cpu_engine::kernels::HasInt16()) {
-      return absl::InvalidArgumentError(
-          "precision: expected PRECISION_F32, got PRECISION_INT16; this processor does not "
-          "multiply integers of 16 bits (AVX-512 VNNI)");
-    }
     engine.precision = Precision::kInt16;
   }
   return ModelSource{
-      absl::StrCat("cpu, ", NameOf(engine.precision), ", ",
+      absl::StrCat("cpu, ", engine.precision == Precision::kInt16 ? "int16" : "f32", ", ",
                    duet::cpu_engine::kernels::InstructionSet()),
       [engine](const std::filesystem::path& folder) {
         return Shared(duet::cpu_engine::LoadCpuSynthesizer(folder, engine));

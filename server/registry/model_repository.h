@@ -66,7 +66,7 @@ LoadReport LoadCheckpoint(const std::filesystem::path& folder, const ModelLoader
 
 // How models are loaded.
 struct ModelSource {
-  std::string engine;  // for the log and replies (SynthesisHeader): "cpu, bf16, AVX-512"
+  std::string engine;  // for the log and replies (SynthesisHeader): "cpu, int16, AVX-512"
   ModelLoader load_folder;
   // Loads the embedded models. The default model is the first.
   std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>

@@ -1,7 +1,7 @@
 #ifndef DUET_MODEL_CPU_ENGINE_KERNELS_ADDITIVE_ATTENTION_H_
 #define DUET_MODEL_CPU_ENGINE_KERNELS_ADDITIVE_ATTENTION_H_
 
-#include "model/cpu_engine/kernels/matrix.h"
+#include "model/cpu_engine/kernels/gemm.h"
 
 namespace duet::cpu_engine::kernels {
 

@@ -2,27 +2,10 @@
 
 #include <algorithm>
 
-#include "model/cpu_engine/kernels/gemm_bf16.h"
-#include "model/cpu_engine/kernels/gemm_f32.h"
-
 namespace duet::cpu_engine::kernels {
 namespace {
 
 std::size_t Size(std::ptrdiff_t count) { return static_cast<std::size_t>(count); }
-
-// Packs rounded panels in pairs of inputs: [panels, Bf16Pairs(inputs), kPanel, 2].
-std::vector<uint16_t> RoundedPanels(const std::vector<float>& panels, int outputs, int inputs) {
-  const int pairs = Bf16Pairs(inputs);
-  std::vector<uint16_t> rounded(Size(std::ptrdiff_t{PanelCount(outputs)} * pairs * kPanel * 2));
-  for (int p = 0; p < PanelCount(outputs); ++p) {
-    for (int k = 0; k < inputs; ++k) {
-      const float* row = panels.data() + (std::ptrdiff_t{p} * inputs + k) * kPanel;
-      uint16_t* pair = rounded.data() + (std::ptrdiff_t{p} * pairs + k / 2) * kPanel * 2 + k % 2;
-      for (int c = 0; c < kPanel; ++c) pair[2 * c] = ToBf16(row[c]);
-    }
-  }
-  return rounded;
-}
 
 }  // namespace
 
@@ -57,9 +40,6 @@ PackedMatrix::PackedMatrix(const std::vector<float>& weights, const std::vector<
   }
   panels_.resize(Size(std::ptrdiff_t{PanelCount(outputs)} * inputs * kPanel));
   PackPanels(weights.data(), inputs, 1, outputs, inputs, panels_.data());
-  if (precision == Precision::kFloat32) return;
-  rounded_panels_ = RoundedPanels(panels_, outputs, inputs);
-  panels_ = {};
 }
 
 void PackedMatrix::Multiply(int rows, const float* x, std::ptrdiff_t x_stride, float* y,
@@ -67,9 +47,7 @@ void PackedMatrix::Multiply(int rows, const float* x, std::ptrdiff_t x_stride, f
   const Rows in{x, x_stride, rows, inputs_};
   const Output out{y, y_stride, outputs_};
   const float* bias = bias_.empty() ? nullptr : bias_.data();
-  if (precision_ == Precision::kBfloat16) {
-    GemmBf16(in, rounded_panels_.data(), bias, out);
-  } else if (precision_ == Precision::kInt16) {
+  if (precision_ == Precision::kInt16) {
     GemmInt16(in, integers_, bias, out);
   } else {
     GemmF32(in, panels_.data(), bias, out);

@@ -2,19 +2,16 @@
 #define DUET_MODEL_CPU_ENGINE_KERNELS_PACKED_MATRIX_H_
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include "model/cpu_engine/kernels/gemm_int16.h"
-#include "model/cpu_engine/kernels/matrix.h"
+#include "model/cpu_engine/kernels/gemm.h"
 
 namespace duet::cpu_engine::kernels {
 
-// The type of the factors of products. Sums are float32.
+// The type of the factors of products.
 enum class Precision {
   kFloat32,
-  kBfloat16,  // half the memory and, where IsBf16Faster(), twice the speed
-  kInt16      // half the memory and, with HasInt16(), twice the speed; sums of an exact int32
+  kInt16  // half the memory and, where IsInt16Faster(), 1.2 to 2 times the speed
 };
 
 // Packs a matrix [outputs, inputs], whose value of output n and input k is
@@ -49,7 +46,6 @@ class PackedMatrix {
   int outputs_ = 0, inputs_ = 0;
   Precision precision_ = Precision::kFloat32;
   std::vector<float> panels_;
-  std::vector<uint16_t> rounded_panels_;
   Int16Matrix integers_;
   std::vector<float> bias_;  // empty, or padded with zeros to whole panels
 };

@@ -71,7 +71,7 @@ class FakeConnection : public Connection {
   }
   std::function<absl::Status(const SynthesisRequest&, int call)> answer;
   float distance = 1;
-  MadeBy made_by = {true, "cpu, bf16, AVX-512", "1.0.0"};
+  MadeBy made_by = {true, "cpu, int16, AVX-512", "1.0.0"};
   std::atomic<int> calls{0};
 };
 
@@ -165,11 +165,11 @@ TEST_F(JobTest, AnswersThatAreMadeInAnotherWayAreRefusedByName) {
   ASSERT_THAT(Run("set", some), IsOk());
   const auto record = nlohmann::json::parse(Lines("set/index.jsonl")[0]);
   EXPECT_EQ(record["cleaned_up"], true);
-  EXPECT_EQ(record["engine"], "cpu, bf16, AVX-512");
+  EXPECT_EQ(record["engine"], "cpu, int16, AVX-512");
   EXPECT_EQ(record["server_version"], "1.0.0");
   const auto model = nlohmann::json::parse(Read("set/dataset.json"))["models"][0];
   EXPECT_EQ(model["cleaned_up"], true);
-  EXPECT_EQ(model["engine"], "cpu, bf16, AVX-512");
+  EXPECT_EQ(model["engine"], "cpu, int16, AVX-512");
   const MadeBy first = connection().made_by;
   const std::string refusal = "model fake@3: an answer was made in another way";
   const std::vector<std::pair<MadeBy, std::string>> others = {

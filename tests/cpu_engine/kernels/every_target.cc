@@ -4,7 +4,6 @@
 #include <hwy/targets.h>
 
 #include "model/base/random.h"
-#include "model/cpu_engine/kernels/matrix.h"
 
 namespace duet::cpu_engine::kernels {
 namespace {

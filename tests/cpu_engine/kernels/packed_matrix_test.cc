@@ -3,20 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
-#include "model/cpu_engine/kernels/gemm_bf16.h"
-#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
-#include "model/cpu_engine/kernels/gemm_bf16_portable.h"
 #include "tests/cpu_engine/kernels/every_target.h"
 
 namespace duet::cpu_engine::kernels {
 namespace {
-
-TEST(Bf16, IsPreferredOnlyWhereTheProcessorMultipliesIt) {
-  EXPECT_TRUE(HasBf16() || !IsBf16Faster());
-  EXPECT_TRUE(!HasAmx() || IsBf16Faster());
-}
 
 class PackedMatrixTest : public EveryTarget {};
 DUET_FOR_EVERY_TARGET(PackedMatrixTest);
@@ -39,44 +30,33 @@ std::vector<Case> Cases() {
   return cases;
 }
 
-float Rounded(float value) {
-  const uint32_t bits = uint32_t{ToBf16(value)} << 16;
-  float rounded;
-  std::memcpy(&rounded, &bits, sizeof(rounded));
-  return rounded;
-}
-
 TEST_P(PackedMatrixTest, EqualsTheDefinition) {
-  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
-    const bool rounds = precision == Precision::kBfloat16;
-    for (const Case& c : Cases()) {
-      const std::vector<float> weights = Values(c.outputs * c.inputs), bias = Values(c.outputs);
-      // The stride of rows exceeds their length.
-      const int x_stride = c.inputs + 3, y_stride = c.outputs + 2;
-      const std::vector<float> x = Values(c.rows * x_stride);
-      std::vector<float> y(static_cast<std::size_t>(c.rows * y_stride), -99);
-      const PackedMatrix matrix(weights, bias, c.outputs, c.inputs, precision);
-      matrix.Multiply(c.rows, x.data(), x_stride, y.data(), y_stride);
-      const auto value = [&](float v) { return rounds ? Rounded(v) : v; };
-      for (int r = 0; r < c.rows; ++r) {
-        for (int n = 0; n < c.outputs; ++n) {
-          double sum = bias[static_cast<std::size_t>(n)];
-          for (int k = 0; k < c.inputs; ++k) {
-            sum += double{value(x[static_cast<std::size_t>(r * x_stride + k)])} *
-                   value(weights[static_cast<std::size_t>(n * c.inputs + k)]);
-          }
-          ASSERT_NEAR(y[static_cast<std::size_t>(r * y_stride + n)], sum, 2e-6 * c.inputs + 1e-6)
-              << c.rows << " rows, " << c.inputs << " -> " << c.outputs << " at " << r << ", " << n;
+  for (const Case& c : Cases()) {
+    const std::vector<float> weights = Values(c.outputs * c.inputs), bias = Values(c.outputs);
+    // The stride of rows exceeds their length.
+    const int x_stride = c.inputs + 3, y_stride = c.outputs + 2;
+    const std::vector<float> x = Values(c.rows * x_stride);
+    std::vector<float> y(static_cast<std::size_t>(c.rows * y_stride), -99);
+    const PackedMatrix matrix(weights, bias, c.outputs, c.inputs, Precision::kFloat32);
+    matrix.Multiply(c.rows, x.data(), x_stride, y.data(), y_stride);
+    for (int r = 0; r < c.rows; ++r) {
+      for (int n = 0; n < c.outputs; ++n) {
+        double sum = bias[static_cast<std::size_t>(n)];
+        for (int k = 0; k < c.inputs; ++k) {
+          sum += double{x[static_cast<std::size_t>(r * x_stride + k)]} *
+                 weights[static_cast<std::size_t>(n * c.inputs + k)];
         }
-        ASSERT_EQ(y[static_cast<std::size_t>(r * y_stride + c.outputs)], -99) << "wrote past a row";
+        ASSERT_NEAR(y[static_cast<std::size_t>(r * y_stride + n)], sum, 2e-6 * c.inputs + 1e-6)
+            << c.rows << " rows, " << c.inputs << " -> " << c.outputs << " at " << r << ", " << n;
       }
+      ASSERT_EQ(y[static_cast<std::size_t>(r * y_stride + c.outputs)], -99) << "wrote past a row";
     }
   }
 }
 
 TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
   constexpr int kRows = 25, kInputs = 601, kOutputs = 77;
-  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16, Precision::kInt16}) {
+  for (const Precision precision : {Precision::kFloat32, Precision::kInt16}) {
     const PackedMatrix matrix(Values(kOutputs * kInputs), {}, kOutputs, kInputs, precision);
     const std::vector<float> x = Values(kRows * kInputs);
     std::vector<float> together(kRows * kOutputs), alone(kOutputs);
@@ -151,67 +131,6 @@ TEST_P(PackedMatrixTest, IntegersKeepZerosAndPassOnWhatIsNotFinite) {
   }
 }
 
-TEST_P(PackedMatrixTest, PortableIntegersEqualTheProcessors) {
-  constexpr int kRows = 14, kInputs = 601, kOutputs = 70;
-  const std::vector<float> weights = Values(kInputs * kOutputs), x = Values(kRows * kInputs);
-  const std::vector<float> bias = Values(PanelCount(kOutputs) * kPanel);
-  const Int16Matrix matrix = PackInt16(weights.data(), kOutputs, kInputs);
-  std::vector<float> y(kRows * kOutputs), same(kRows * kOutputs);
-  for (const float* begin :
-       {static_cast<const float*>(bias.data()), static_cast<const float*>(nullptr)}) {
-    GemmInt16({x.data(), kInputs, kRows, kInputs}, matrix, begin, {y.data(), kOutputs, kOutputs});
-    GemmInt16Portable({x.data(), kInputs, kRows, kInputs}, matrix, begin,
-                      {same.data(), kOutputs, kOutputs});
-    // Units that round differently move single values to the next integer.
-    for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], same[i], 2e-3);
-  }
-}
-
-TEST_P(PackedMatrixTest, AddsTheWeightedSumOfRowsPackedOnTheFly) {
-  for (const int inputs : {1, 2, 7, 46}) {
-    for (const int width : {5, 32, 100}) {
-      const std::vector<float> rows = Values(inputs * width), weights = Values(inputs),
-                               before = Values(width);
-      std::vector<uint16_t> panels(
-          static_cast<std::size_t>(PanelCount(width) * Bf16Pairs(inputs) * kPanel * 2));
-      PackRowsBf16({rows.data(), width, inputs, width}, panels.data());
-      std::vector<float> sums = before;
-      AddGemmBf16({weights.data(), inputs, 1, inputs}, panels.data(), {sums.data(), width, width});
-      for (int n = 0; n < width; ++n) {
-        double sum = before[static_cast<std::size_t>(n)];
-        for (int k = 0; k < inputs; ++k) {
-          sum += double{Rounded(weights[static_cast<std::size_t>(k)])} *
-                 Rounded(rows[static_cast<std::size_t>(k * width + n)]);
-        }
-        EXPECT_NEAR(sums[static_cast<std::size_t>(n)], sum, 1e-5) << inputs << " " << n;
-      }
-    }
-  }
-}
-
-// On processors that multiply bfloat16: their products equal the portable ones.
-TEST_P(PackedMatrixTest, PortableProductsRoundLikeTheProcessor) {
-  constexpr int kRows = 3, kInputs = 45, kOutputs = 70;
-  const std::vector<float> weights = Values(kInputs * kOutputs), x = Values(kRows * kInputs),
-                           before = Values(kRows * kOutputs);
-  std::vector<uint16_t> panels(
-      static_cast<std::size_t>(PanelCount(kOutputs) * Bf16Pairs(kInputs) * kPanel * 2), 7);
-  std::vector<uint16_t> portable = panels;
-  PackRowsBf16({weights.data(), kOutputs, kInputs, kOutputs}, panels.data());
-  PackRowsBf16Portable({weights.data(), kOutputs, kInputs, kOutputs}, portable.data());
-  EXPECT_EQ(panels, portable);
-  std::vector<float> y = before, same = before;
-  AddGemmBf16({x.data(), kInputs, kRows, kInputs}, panels.data(), {y.data(), kOutputs, kOutputs});
-  GemmBf16Portable({x.data(), kInputs, kRows, kInputs}, panels.data(), nullptr, true,
-                   {same.data(), kOutputs, kOutputs});
-  for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], same[i], 1e-5);
-  GemmBf16Portable({x.data(), kInputs, kRows, kInputs}, panels.data(), before.data(), false,
-                   {same.data(), kOutputs, kOutputs});
-  GemmBf16({x.data(), kInputs, kRows, kInputs}, panels.data(), before.data(),
-           {y.data(), kOutputs, kOutputs});
-  for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], same[i], 1e-5);
-}
-
 TEST(PackPanelsTest, PadsTheLastPanelWithZeros) {
   constexpr int kOutputs = 34, kInputs = 2;
   std::vector<float> by_output, by_input(kOutputs * kInputs);
@@ -230,14 +149,6 @@ TEST(PackPanelsTest, PadsTheLastPanelWithZeros) {
   EXPECT_EQ(panels[kInputs * kPanel + 1], 34);  // the last output
   EXPECT_EQ(panels[kInputs * kPanel + 2], 0);   // after it
   EXPECT_EQ(panels[(kInputs + 1) * kPanel + 31], 0);
-}
-
-TEST(ToBf16Test, RoundsToTheNearestAndTiesToEven) {
-  EXPECT_EQ(ToBf16(1.0f), 0x3f80);
-  EXPECT_EQ(ToBf16(-2.0f), 0xc000);
-  EXPECT_EQ(ToBf16(1.0f + 0x1p-8f), 0x3f80);             // half way, down to even
-  EXPECT_EQ(ToBf16(1.0f + 3 * 0x1p-8f), 0x3f82);         // half way, up to even
-  EXPECT_EQ(ToBf16(1.0f + 0x1p-8f + 0x1p-20f), 0x3f81);  // just above half way
 }
 
 }  // namespace
