@@ -5,11 +5,9 @@
 #include <vector>
 
 #include "model/base/random.h"
-#include "model/cpu_engine/kernels/additive_attention.h"
-#include "model/cpu_engine/kernels/lstm_cell.h"
 #include "model/cpu_engine/kernels/packed_matrix.h"
-#include "model/cpu_engine/kernels/rowwise.h"
-#include "model/cpu_engine/kernels/self_attention.h"
+#include "model/cpu_engine/kernels/recurrent.h"
+#include "model/cpu_engine/kernels/transformer.h"
 
 namespace duet::cpu_engine::kernels {
 namespace {
@@ -70,7 +68,7 @@ void BM_AddWeighted(benchmark::State& state) {
   const std::vector<float> values = Values(kFrames * kGates), weights = Values(kFrames);
   std::vector<float> sums(kGates);
   for (auto _ : state) {
-    AddWeighted({values.data(), kGates, kFrames, kGates}, weights.data(), sums.data());
+    AddWeighted(kFrames, kGates, values.data(), weights.data(), sums.data());
     benchmark::ClobberMemory();
   }
   PerSecond(state, "FLOP/s", 2.0 * kFrames * kGates);

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "model/cpu_engine/kernels/additive_attention.h"
+#include "model/cpu_engine/kernels/recurrent.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

@@ -7,8 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/angle.h"
 #include "model/checkpoint/architecture.h"
-#include "model/cpu_engine/kernels/rowwise.h"
-#include "model/cpu_engine/kernels/self_attention.h"
+#include "model/cpu_engine/kernels/transformer.h"
 
 namespace duet::cpu_engine {
 namespace {

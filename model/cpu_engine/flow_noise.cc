@@ -5,8 +5,7 @@
 #include <cstddef>
 
 #include "model/base/open_uniforms.h"
-#include "model/cpu_engine/kernels/gemm_f32.h"
-#include "model/cpu_engine/kernels/normal.h"
+#include "model/cpu_engine/kernels/transformer.h"
 #include "model/engine/frame_noise.h"
 
 namespace duet::cpu_engine {

@@ -5,8 +5,7 @@
 #include <numeric>
 
 #include "absl/strings/str_cat.h"
-#include "model/cpu_engine/kernels/additive_attention.h"
-#include "model/cpu_engine/kernels/lstm_cell.h"
+#include "model/cpu_engine/kernels/recurrent.h"
 
 namespace duet::cpu_engine {
 namespace {
@@ -77,6 +76,27 @@ int FrameAt(int direction, int length, int step) {
 }
 
 }  // namespace
+
+WindowBatch MakeWindowBatch(absl::Span<const engine::NetworkInput> inputs, Scratch::Use* scratch) {
+  const int count = static_cast<int>(inputs.size());
+  const auto frames = [&](int n) {
+    return inputs[static_cast<std::size_t>(n)].leader.frame_count();
+  };
+  int* order = scratch->Take<int>(count);
+  std::iota(order, order + count, 0);
+  // Not stable_sort, which allocates.
+  std::sort(order, order + count,
+            [&](int a, int b) { return frames(a) != frames(b) ? frames(a) > frames(b) : a < b; });
+  int* length = scratch->Take<int>(count);
+  int* first_row = scratch->Take<int>(count);
+  int rows = 0;
+  for (int n = 0; n < count; ++n) {
+    length[n] = frames(order[n]);
+    first_row[n] = rows;
+    rows += length[n];
+  }
+  return {count, rows, order, length, first_row};
+}
 
 PaperNetwork::PaperNetwork(const checkpoint::Checkpoint& checkpoint, Precision precision)
     : joints_(checkpoint.manifest.model.skeleton.joint_count()),
@@ -283,8 +303,7 @@ void PaperNetwork::LookAt(const WindowBatch& batch, int n, int direction,
   const int width = 4 * state_, frames = batch.length[n];
   kernels::WeighFrames({frames, attention_, decoder.encoded + row * attention_, gates + width,
                         directions_[direction].score.data(), decoder.weights});
-  kernels::AddWeighted({decoder.values + row * width, width, frames, width}, decoder.weights,
-                       gates);
+  kernels::AddWeighted(frames, width, decoder.values + row * width, decoder.weights, gates);
 }
 
 // Adds the base pose: the root and the pose relative to it, each from the follower's start if that

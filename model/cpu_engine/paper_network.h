@@ -9,10 +9,36 @@
 #include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/cpu_engine/scratch.h"
 #include "model/cpu_engine/weights.h"
-#include "model/cpu_engine/window_batch.h"
 #include "model/engine/network.h"
 
 namespace duet::cpu_engine {
+
+// The layout of a batch: the rows of one matrix are the frames of all windows, window by window,
+// the longest window first. There is no padding.
+struct WindowBatch {
+  int count;             // windows
+  int rows;              // frames of all of them
+  const int* input;      // [count] index of the input
+  const int* length;     // [count] frames, in descending order
+  const int* first_row;  // [count]
+
+  // At most `most` windows from `begin` on. Their rows keep their indices.
+  WindowBatch Some(int begin, int most) const {
+    const int size = begin + most < count ? most : count - begin;
+    const int last = begin + size - 1;
+    return {size, first_row[last] + length[last] - first_row[begin], input + begin, length + begin,
+            first_row + begin};
+  }
+
+  // Number of windows that have a frame `step`; they are the first ones. `before` is the result for
+  // an earlier step.
+  int LongerThan(int step, int before) const {
+    while (before > 0 && length[before - 1] <= step) --before;
+    return before;
+  }
+};
+
+WindowBatch MakeWindowBatch(absl::Span<const engine::NetworkInput> inputs, Scratch::Use* scratch);
 
 // The paper's hierarchical generator. Read it from Run downwards: the slices' features and
 // encoders, the attentive decoder in both directions, the output, the base pose.

@@ -13,7 +13,7 @@
 #include "duet/v1/server_config.pb.h"
 #include "model/base/program_output.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
-#include "model/cpu_engine/kernels/instruction_set.h"
+#include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/torch_plugin/torch_plugin.h"
 #include "server/lifecycle/process_end.h"
 #include "server/lifecycle/run_server.h"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "model/cpu_engine/cpu_network.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/embedded/embedded.h"
 
 namespace {

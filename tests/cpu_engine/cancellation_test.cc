@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "model/cpu_engine/cpu_network.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/embedded/embedded.h"
 
 namespace duet::cpu_engine {

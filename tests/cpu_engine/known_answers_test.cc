@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "model/cpu_engine/cpu_network.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
 #include "tests/cpu_engine/network_inputs.h"
 #include "tests/cpu_engine/random_checkpoint.h"
 

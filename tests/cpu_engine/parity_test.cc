@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "model/cpu_engine/cpu_network.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/embedded/embedded.h"
 #include "model/motion/skeleton.h"
 #include "model/torch_engine/torch_network.h"

@@ -1,6 +1,6 @@
-#include "model/cpu_engine/window_batch.h"
-
 #include <gmock/gmock.h>
+
+#include "model/cpu_engine/paper_network.h"
 
 namespace duet::cpu_engine {
 namespace {

@@ -1,5 +1,7 @@
 #include "model/cpu_engine/kernels/packed_matrix.h"
 
+#include <hwy/targets.h>
+
 #include <algorithm>
 
 namespace duet::cpu_engine::kernels {
@@ -8,6 +10,13 @@ namespace {
 std::size_t Size(std::ptrdiff_t count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
+
+std::string InstructionSet() {
+  const int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  const std::string name = hwy::TargetName(usable & -usable);  // the lowest bit is the best
+  // AVX3, AVX3_ZEN4 and others: all have vectors of 512 bits.
+  return name.rfind("AVX3", 0) == 0 ? "AVX-512" : name;
+}
 
 void PackPanels(const float* from, std::ptrdiff_t output_stride, std::ptrdiff_t input_stride,
                 int outputs, int inputs, float* panels) {

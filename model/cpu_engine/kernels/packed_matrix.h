@@ -2,6 +2,7 @@
 #define DUET_MODEL_CPU_ENGINE_KERNELS_PACKED_MATRIX_H_
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "model/cpu_engine/kernels/gemm.h"
@@ -13,6 +14,10 @@ enum class Precision {
   kFloat32,
   kInt16  // half the memory and, where IsInt16Faster(), 1.2 to 2 times the speed
 };
+
+// The instruction set for which the kernels that run here were compiled, such as "AVX-512", "AVX2"
+// or "NEON". Different ones add in different orders, so that results differ by rounding.
+std::string InstructionSet();
 
 // Packs a matrix [outputs, inputs], whose value of output n and input k is
 // from[n output_stride + k input_stride], in the order in which a product reads it:

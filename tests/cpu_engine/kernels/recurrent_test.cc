@@ -1,11 +1,10 @@
-// The kernels of the paper's generator against their definitions.
+#include "model/cpu_engine/kernels/recurrent.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "model/cpu_engine/kernels/additive_attention.h"
-#include "model/cpu_engine/kernels/lstm_cell.h"
 #include "tests/cpu_engine/kernels/every_target.h"
 
 namespace duet::cpu_engine::kernels {
@@ -85,7 +84,7 @@ TEST_P(AdditiveAttentionTest, EqualsTheDefinition) {
                                score = Values(attention, 3), before = Values(width);
       std::vector<float> sums = before, weights(static_cast<std::size_t>(frames));
       WeighFrames({frames, attention, encoded.data(), query.data(), score.data(), weights.data()});
-      AddWeighted({values.data(), width, frames, width}, weights.data(), sums.data());
+      AddWeighted(frames, width, values.data(), weights.data(), sums.data());
       std::vector<double> expected;
       double all = 0;
       for (int j = 0; j < frames; ++j) {

@@ -1,12 +1,10 @@
-// The kernels of the sampling generator against their definitions.
+#include "model/cpu_engine/kernels/transformer.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "model/base/random.h"
-#include "model/cpu_engine/kernels/normal.h"
-#include "model/cpu_engine/kernels/rowwise.h"
-#include "model/cpu_engine/kernels/self_attention.h"
 #include "tests/cpu_engine/kernels/every_target.h"
 
 namespace duet::cpu_engine::kernels {

@@ -1,16 +1,61 @@
-#include "model/cpu_engine/kernels/self_attention.h"
+#include "model/cpu_engine/kernels/transformer.h"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/self_attention.cc"
+#define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/transformer.cc"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "model/cpu_engine/kernels/vector_math-inl.h"
+// clang-format off: this must follow foreach_target.h.
+#include <hwy/contrib/math/math-inl.h>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
+
+// The number of values after `at` of `count`, at most one vector.
+HWY_INLINE ptrdiff_t Left(ptrdiff_t count, ptrdiff_t at) { return HWY_MIN(count - at, Lanes()); }
+
+void GeluInPlace(ptrdiff_t count, float* HWY_RESTRICT values) {
+  const Tag d;
+  const Vector half = hn::Set(d, 0.5f), root_half = hn::Set(d, 0.70710678118654752f);
+  for (ptrdiff_t i = 0; i < count; i += Lanes()) {
+    const Vector x = LoadFirst(Left(count, i), values + i);
+    StoreFirst(Left(count, i), half * x * (hn::Set(d, 1.0f) + Erf(x * root_half)), values + i);
+  }
+}
+
+void SiluInPlace(ptrdiff_t count, float* HWY_RESTRICT values) {
+  for (ptrdiff_t i = 0; i < count; i += Lanes()) {
+    const Vector x = LoadFirst(Left(count, i), values + i);
+    StoreFirst(Left(count, i), x * Sigmoid(x), values + i);
+  }
+}
+
+void Norm(const NormRow& row) {
+  const Tag d;
+  Vector sum = hn::Zero(d);
+  for (int i = 0; i < row.width; i += Lanes()) sum = sum + LoadFirst(row.width - i, row.x + i);
+  const float width = static_cast<float>(row.width);
+  const Vector mean = hn::Set(d, hn::GetLane(hn::SumOfLanes(d, sum)) / width);
+  Vector squares = hn::Zero(d);
+  for (int i = 0; i < row.width; i += Lanes()) {
+    const auto valid = hn::FirstN(d, static_cast<size_t>(HWY_MIN(row.width - i, Lanes())));
+    const Vector from_mean = hn::IfThenElseZero(valid, LoadFirst(row.width - i, row.x + i) - mean);
+    squares = hn::MulAdd(from_mean, from_mean, squares);
+  }
+  const float variance = hn::GetLane(hn::SumOfLanes(d, squares)) / width;
+  const Vector factor = hn::Set(d, 1 / std::sqrt(variance + 1e-5f));
+  const Vector offset = hn::Set(d, row.scale_offset);
+  for (int i = 0; i < row.width; i += Lanes()) {
+    const int valid = row.width - i;
+    const Vector normal = (LoadFirst(valid, row.x + i) - mean) * factor;
+    const Vector scale = LoadFirst(valid, row.scale + i) + offset;
+    StoreFirst(valid, hn::MulAdd(normal, scale, LoadFirst(valid, row.shift + i)), row.out + i);
+  }
+}
 
 // Rows of a tile: the sums of three vectors of columns each fit the registers besides the factors.
 constexpr int kRows = HWY_TARGET <= HWY_AVX3 ? 8 : 4;
@@ -140,15 +185,53 @@ void Attend(const SelfAttention& in) {
            in.size);
 }
 
+using DoubleTag = hn::CappedTag<double, 8>;
+
+HWY_INLINE hn::Vec<DoubleTag> Normals(const double* uniform) {
+  const DoubleTag d;
+  hn::Vec<DoubleTag> radius, angle;
+  hn::LoadInterleaved2(d, uniform, radius, angle);
+  radius = hn::Sqrt(hn::Set(d, -2.0) * hn::Log(d, radius));
+  return radius * hn::Cos(d, hn::Set(d, 6.283185307179586) * angle);
+}
+
+void BoxMuller(ptrdiff_t count, const double* uniform, float* out) {
+  const DoubleTag d;
+  constexpr size_t kMost = hn::MaxLanes(d);
+  const ptrdiff_t lanes = static_cast<ptrdiff_t>(hn::Lanes(d));
+  HWY_ALIGN double pairs[2 * kMost];
+  HWY_ALIGN double normals[kMost];
+  for (ptrdiff_t i = 0; i < count; i += lanes) {
+    const ptrdiff_t size = count - i < lanes ? count - i : lanes;
+    const double* from = uniform + 2 * i;
+    if (size < lanes) {
+      for (ptrdiff_t k = 0; k < 2 * lanes; ++k) pairs[k] = k < 2 * size ? from[k] : 0.5;
+      from = pairs;
+    }
+    hn::Store(Normals(from), d, normals);
+    for (ptrdiff_t k = 0; k < size; ++k) out[i + k] = static_cast<float>(normals[k]);
+  }
+}
+
 }  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace duet::cpu_engine::kernels {
 
+HWY_EXPORT(GeluInPlace);
+HWY_EXPORT(SiluInPlace);
+HWY_EXPORT(Norm);
 HWY_EXPORT(Attend);
+HWY_EXPORT(BoxMuller);
 
+void Gelu(std::ptrdiff_t count, float* values) { HWY_DYNAMIC_DISPATCH(GeluInPlace)(count, values); }
+void Silu(std::ptrdiff_t count, float* values) { HWY_DYNAMIC_DISPATCH(SiluInPlace)(count, values); }
+void LayerNorm(const NormRow& row) { HWY_DYNAMIC_DISPATCH(Norm)(row); }
 void AttendToSelf(const SelfAttention& attention) { HWY_DYNAMIC_DISPATCH(Attend)(attention); }
+void StandardNormals(std::ptrdiff_t count, const double* uniform, float* out) {
+  HWY_DYNAMIC_DISPATCH(BoxMuller)(count, uniform, out);
+}
 
 }  // namespace duet::cpu_engine::kernels
 #endif
