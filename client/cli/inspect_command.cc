@@ -17,7 +17,6 @@
 #include "model/base/printable.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
-#include "model/motion/vertical.h"
 #include "model/retargeting/reading_report.h"
 #include "nlohmann/json.hpp"
 
@@ -42,8 +41,6 @@ struct Inspection {
   std::string file;
   absl::Status status;
   std::vector<InspectedPerson> people;
-  // Of the camera, from all people. Absent if the file cannot be read or has no frame rate.
-  std::optional<motion::VerticalEstimate> vertical;
 };
 
 // Empty if reading ended before this was known.
@@ -154,27 +151,6 @@ json PersonJson(const InspectedPerson& person) {
           {"missing_joints", missing}};
 }
 
-std::string DescribeVertical(const motion::VerticalEstimate& vertical) {
-  std::string text = Describe(vertical);
-  if (vertical.verdict == motion::TiltVerdict::kTilted) {
-    absl::StrAppendFormat(&text, "; vertical %.3f,%.3f,%.3f", vertical.up.x, vertical.up.y,
-                          vertical.up.z);
-  }
-  if (vertical.places == 0) return absl::StrCat(text, "; no foot rests in several places");
-  return absl::StrCat(text, "; feet rest in ", base::Counted(vertical.places, "place"));
-}
-
-json VerticalJson(const motion::VerticalEstimate& vertical) {
-  return {{"verdict", std::string(VerdictName(vertical.verdict))},
-          {"text", Describe(vertical)},
-          {"up", {vertical.up.x, vertical.up.y, vertical.up.z}},
-          {"tilt_degrees", vertical.tilt_degrees},
-          {"error_degrees", vertical.error_degrees},
-          {"deviations", vertical.deviations},
-          {"disagreement", vertical.disagreement},
-          {"places", vertical.places}};
-}
-
 std::string DescribeInspection(const Inspection& inspection) {
   std::string text = base::EscapeControls(inspection.file);
   const retargeting::ReadingReport& first = inspection.people[0].report;
@@ -199,9 +175,6 @@ std::string DescribeInspection(const Inspection& inspection) {
     const bool repeated = i > 0 && reading == DescribeReading(first);
     absl::StrAppend(&text, repeated ? "  read as the other\n" : reading);
   }
-  if (inspection.vertical) {
-    absl::StrAppend(&text, "  tilt        ", DescribeVertical(*inspection.vertical), "\n");
-  }
   if (!inspection.status.ok()) {
     absl::StrAppend(&text, "  ", "cannot be read", ": ", inspection.status.message(), "\n");
   }
@@ -221,7 +194,6 @@ json InspectionJson(const Inspection& inspection) {
     object["error"] = inspection.status.message();
     return object;
   }
-  if (inspection.vertical) object["tilt"] = VerticalJson(*inspection.vertical);
   object["frames"] = first.clip.frame_count();
   if (first.clip.frame_rate_hz > 0) {
     object["frame_rate_hz"] = first.clip.frame_rate_hz;
@@ -261,15 +233,6 @@ absl::Status InspectPerson(const std::filesystem::path& file, formats::ReadOptio
   return absl::OkStatus();
 }
 
-// Whether its people are evidence of the vertical.
-bool HasRate(const Inspection& inspection) {
-  return inspection.status.ok() && inspection.people[0].clip.frame_rate_hz > 0;
-}
-
-void AddPeople(const Inspection& inspection, motion::VerticalEvidence* evidence) {
-  for (const InspectedPerson& person : inspection.people) evidence->Add(person.clip);
-}
-
 Inspection Inspect(const std::filesystem::path& file, const InputArguments& input) {
   Inspection inspection;
   inspection.file = file.string();
@@ -285,22 +248,15 @@ Inspection Inspect(const std::filesystem::path& file, const InputArguments& inpu
     inspection.people.emplace_back();
     inspection.status = InspectPerson(file, *options, &inspection.people[1]);
   }
-  if (HasRate(inspection)) {
-    motion::VerticalEvidence evidence(options->skeleton);
-    AddPeople(inspection, &evidence);
-    inspection.vertical = evidence.Estimate();
-  }
   return inspection;
 }
 
 ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment& environment) {
   ExitCode worst = kExitDone;
   nlohmann::json files = nlohmann::json::array();
-  motion::VerticalEvidence evidence(motion::SbuSkeleton());
   for (std::size_t i = 0; i < arguments.files.size(); ++i) {
     const Inspection inspection = Inspect(arguments.files[i], arguments.input);
     worst = std::max(worst, ExitCodeFor(inspection.status));
-    if (HasRate(inspection)) AddPeople(inspection, &evidence);
     if (arguments.json) {
       files.push_back(InspectionJson(inspection));
       continue;
@@ -308,14 +264,7 @@ ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment&
     *environment.out << (i == 0 ? "" : "\n") << DescribeInspection(inspection)
                      << (inspection.status.ok() ? "" : DescribeAdvice(inspection.status));
   }
-  const motion::VerticalEstimate together = evidence.Estimate();
-  if (arguments.json) {
-    *environment.out << Print({{"files", files}, {"tilt", VerticalJson(together)}});
-  } else if (arguments.files.size() > 1) {
-    *environment.out << "\n"
-                     << "all files, if one camera captured them\n  tilt        "
-                     << DescribeVertical(together) << "\n";
-  }
+  if (arguments.json) *environment.out << Print({{"files", files}});
   return worst;
 }
 

@@ -18,7 +18,6 @@
 #include "model/base/text.h"
 #include "model/messages/message_text.h"
 #include "model/motion/motion_limits.h"
-#include "model/motion/vertical.h"
 
 namespace duet::client::cli {
 namespace {
@@ -51,21 +50,6 @@ absl::StatusOr<FollowerStart> ReadStart(const ReactionArguments& arguments,
   return FollowerStart(*std::move(pose));
 }
 
-// Everybody whom the camera captured: the leader and, in a file with two people, the other person.
-motion::VerticalEstimate EstimateVertical(const motion::Clip& leader,
-                                          const std::filesystem::path& file,
-                                          formats::ReadOptions options, int people) {
-  motion::VerticalEvidence evidence(options.skeleton);
-  evidence.Add(leader);
-  if (people >= 2) {
-    options.side = batch::OtherSide(options.side);
-    options.report = nullptr;
-    const absl::StatusOr<motion::Clip> other = ReadMotion(file, options);
-    if (other.ok()) evidence.Add(*other);
-  }
-  return evidence.Estimate();
-}
-
 absl::Status ReadLeader(const ReactionArguments& arguments, formats::ReadOptions options,
                         SynthesisRequest* request, std::vector<std::string>* notes) {
   retargeting::ReadingReport report;
@@ -75,14 +59,6 @@ absl::Status ReadLeader(const ReactionArguments& arguments, formats::ReadOptions
   if (!leader.ok()) return leader.status();
   request->leader = *std::move(leader);
   if (notes != nullptr) *notes = report.Notes();
-  if (request->up) return absl::OkStatus();
-  const motion::VerticalEstimate vertical =
-      EstimateVertical(request->leader, arguments.leader, options, report.people);
-  const bool tilted = vertical.verdict == motion::TiltVerdict::kTilted;
-  if (tilted) request->up = vertical.up;
-  if (notes != nullptr) {
-    notes->push_back(absl::StrCat(tilted ? "levelled: " : "not levelled: ", Describe(vertical)));
-  }
   return absl::OkStatus();
 }
 

@@ -81,8 +81,7 @@ absl::StatusOr<PreparedCall> PrepareCall(
     const ProgramEnvironment& environment);
 
 // Reads the follower's start and, if the flags name one, the leader, in the skeleton's joints.
-// Levels a leader from a tilted camera. `notes`, which may be null, receives the choices that were
-// made.
+// `notes`, which may be null, receives the choices that were made.
 absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skeleton& skeleton,
                          SynthesisRequest* request, std::vector<std::string>* notes);
 

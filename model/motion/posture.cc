@@ -34,14 +34,16 @@ std::vector<double> HuberWeights(std::vector<double> residuals) {
   return residuals;
 }
 
-}  // namespace
-
+// From the middle of the feet to the neck; to the root if the skeleton has no joint "neck".
+// Requires feet.
 Vec3 FromFeet(const Skeleton& skeleton, const Poses& poses, int frame) {
   const int neck = skeleton.Find("neck");
   const int top = neck < 0 ? skeleton.root : neck;
   return poses.at(frame, top) -
          (poses.at(frame, skeleton.feet->left) + poses.at(frame, skeleton.feet->right)) / 2;
 }
+
+}  // namespace
 
 std::vector<Vec3> StandingDirections(const Skeleton& skeleton, const Poses& poses) {
   std::vector<Vec3> directions;

@@ -14,10 +14,6 @@
 
 namespace duet::motion {
 
-// From the middle of the feet to the neck; to the root if the skeleton has no joint "neck".
-// Requires feet.
-Vec3 FromFeet(const Skeleton& skeleton, const Poses& poses, int frame);
-
 // The direction of length 1 from the middle of the feet to the neck, in every frame; to the root if
 // the skeleton has no joint "neck". Omits frames in which the two coincide. Empty for a skeleton
 // without feet.

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
-
-#include "model/motion/levelling.h"
 
 namespace duet::test {
 namespace {
@@ -66,25 +63,6 @@ motion::Poses SteppingMotion(const std::vector<double>& steps, int frames, doubl
     motion.Append(pose);
   }
   return motion;
-}
-
-motion::Poses TurningMotion(int frame_rate_hz) {
-  constexpr int kPlaces = 9, kRow = 3;
-  motion::Poses motion(0, static_cast<int>(StandingPose().size()));
-  for (int place = 0; place < kPlaces; ++place) {
-    std::vector<motion::Vec3> pose = StandingPose();
-    for (motion::Vec3& position : pose) {
-      position =
-          RotateY(position, 0.7 * place) +
-          motion::Vec3{static_cast<float>(place % kRow), 1.05f, static_cast<float>(place / kRow)};
-    }
-    for (int frame = 0; frame < frame_rate_hz; ++frame) motion.Append(pose);
-  }
-  return motion;
-}
-
-motion::Poses Tilted(motion::Poses level, motion::Vec3 up) {
-  return motion::Levelling(up, 0).Invert(std::move(level));
 }
 
 }  // namespace duet::test

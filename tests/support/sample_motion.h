@@ -26,13 +26,6 @@ motion::Clip SwayingClip(int frames, double frame_rate_hz);
 // Shapes: [frames, 15].
 motion::Poses SteppingMotion(const std::vector<double>& steps, int frames, double frame_rate_hz);
 
-// A person of the SBU skeleton who stands for a second at each of 9 places, 1 m apart, and faces
-// another direction at each: strong evidence of the vertical. Shapes: [9 seconds, 15].
-motion::Poses TurningMotion(int frame_rate_hz);
-
-// A motion as captured by a camera whose vertical is `up`.
-motion::Poses Tilted(motion::Poses level, motion::Vec3 up);
-
 }  // namespace duet::test
 
 #endif  // DUET_TESTS_SUPPORT_SAMPLE_MOTION_H_

@@ -14,15 +14,13 @@ from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldV
                                 InvalidRequestError, MalformedReplyError, ModelNotFoundError,
                                 NotPermittedError, RequestMismatchError, ServerBusyError,
                                 UnavailableError)
-from duet_motion.files import (MotionFileError, estimate_vertical, read_motion, read_pair, write_motion,
-                               write_page)
+from duet_motion.files import MotionFileError, read_motion, read_pair, write_motion, write_page
 from duet_motion.live import LiveHeader, LiveNotice, LivePart, LiveRequest, LiveSummary
 from duet_motion.motion import Motion
 from duet_motion.options import TlsOptions
 from duet_motion.request import Constraint, SynthesisRequest
 from duet_motion.result import (FollowerChunk, FrameRun, JointRotations, ModelDetails, ModelInfo,
-                                MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings,
-                                VerticalEstimate)
+                                MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings)
 from duet_motion.retry import RetryOptions
 from duet_motion.sets import DataSetError, MotionSet, PaddedBatch, SetItem, pad, read_set
 
@@ -35,7 +33,7 @@ __all__ = [
     "ModelDetails", "ModelInfo", "ModelNotFoundError", "Motion", "MotionFileError", "MotionGrade",
     "MotionSet", "NotPermittedError", "PaddedBatch", "RequestLimits", "RequestMismatchError",
     "RetryOptions", "RigJoint", "ServerBusyError", "SetItem", "SynthesisRequest", "SynthesisResult",
-    "SynthesisStream", "Timings", "TlsOptions", "UnavailableError", "VerticalEstimate",
-    "__version__", "aio", "estimate_vertical", "pad", "research", "read_motion", "read_pair",
-    "read_set", "write_motion", "write_page",
+    "SynthesisStream", "Timings", "TlsOptions", "UnavailableError",
+    "__version__", "aio", "pad", "research", "read_motion", "read_pair", "read_set", "write_motion",
+    "write_page",
 ]

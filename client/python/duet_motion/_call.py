@@ -125,7 +125,6 @@ class SynthesisCall:
         check_kind(request, SynthesisRequest)
         self.attempts = Attempts(settings, request.timeout, request.request_id)
         self._wire = to_proto(request)
-        self._vertical = request.vertical
         self._reply = ReplyAssembler(request.leader, bool(request.rotations),
                                      len(request.constraints))
         self._first_chunk: List[float] = []
@@ -168,9 +167,7 @@ class SynthesisCall:
             f"none in {self.attempts.timeout:g} s; raise the timeout or max_concurrent_calls")
 
     def result(self) -> SynthesisResult:
-        answer = self._reply.result(self.attempts.made, self._first_chunk[0],
-                                    self.attempts.elapsed())
-        return dataclasses.replace(answer, vertical=self._vertical)
+        return self._reply.result(self.attempts.made, self._first_chunk[0], self.attempts.elapsed())
 
     def _model_is_gone(self, error: DuetError) -> DuetError:
         model = self._wire.model

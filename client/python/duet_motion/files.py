@@ -11,14 +11,13 @@ import json
 import os
 import pathlib
 import re
-import reprlib
 import shutil
 import subprocess
 import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
-from duet_motion.motion import Motion, axes_from_y_up
-from duet_motion.result import SynthesisResult, VerticalEstimate
+from duet_motion.motion import Motion
+from duet_motion.result import SynthesisResult
 
 Path = Union[str, "os.PathLike[str]"]
 Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
@@ -129,49 +128,6 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
         sources = _documents(folder, list(motions.values()))
         shown = [f"{name}={source}" for name, source in zip(motions, sources)]
         run("view", *shown, *(["--title", title] if title else []), "--out", _word(path), "--quiet")
-
-
-def estimate_vertical(leader: Motion, *others: Motion) -> VerticalEstimate:
-    """Estimates the vertical of the camera that captured all of these people, like ``duet inspect``.
-
-    More people and longer motions give stronger evidence, above all people who turn or face different
-    ways. Everybody must be from one camera in one position.
-
-    >>> camera = duet.estimate_vertical(*duet.read_pair("pair.bvh"))
-    >>> client.synthesize(leader, {"hug": 1}, level=camera)      # levels only if the evidence is strong
-
-    Args:
-        leader: a person with the joints of Duet's skeleton, or with joints whose names are recognised;
-            metres or millimetres. The estimate is in this motion's axes.
-        others: further people.
-
-    Raises:
-        ValueError: a motion has no joints that are recognised, or is ``"sbu-normalised"``.
-        FileNotFoundError: the program `duet` is missing.
-    """
-    people = []
-    for person in (leader, *others):
-        if not isinstance(person, Motion):
-            raise ValueError(f"leader: expected a duet_motion.Motion, got {reprlib.repr(person)}")
-        people.append(person.converted("metres", "y-up"))
-    values = inspect(people)["tilt"]
-    values["up"] = axes_from_y_up(values["up"], leader.up_axis)
-    return VerticalEstimate(**values)
-
-
-def inspect(people: List[Motion]) -> Dict[str, Any]:
-    """What ``duet inspect --json`` prints about these people. Raises MotionFileError."""
-    with tempfile.TemporaryDirectory() as folder:
-        sources = _documents(folder, list(people))
-        done = _run("inspect", *sources, "--json")
-        try:
-            answer: Dict[str, Any] = json.loads(done.stdout)
-        except ValueError:
-            raise MotionFileError(_failure(done)) from None
-        for file in answer["files"]:
-            if not file["readable"]:
-                raise MotionFileError(str(file["error"]).replace(file["file"], "motion"))
-    return answer
 
 
 def run(*arguments: str) -> str:

@@ -171,12 +171,6 @@ class Motion:
                 f"{self.joint_count} joints, {self.unit}, {self.up_axis})")
 
 
-def axes_from_y_up(vector: Sequence[float], up_axis: str) -> Tuple[float, float, float]:
-    """A direction of a y-up world in another axis convention."""
-    x, y, z = (np.asarray(vector) @ _TO_Y_UP[up_axis].T + 0.0).tolist()  # + 0: no -0
-    return x, y, z
-
-
 def checked_array(field: str, values: npt.ArrayLike) -> npt.NDArray[Any]:
     """Converts ``values`` to an array of real numbers; masked values become NaN."""
     if isinstance(values, np.ma.MaskedArray):

@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Union
 import numpy as np
 import numpy.typing as npt
 
-from duet_motion.files import estimate_vertical
 from duet_motion.motion import (UNITS, UP_AXES, Motion, checked_array, checked_number, finite_number,
                                 first_not_finite)
-from duet_motion.result import VerticalEstimate
 from duet_motion.v1 import model_pb2, motion_pb2, reaction_pb2, synthesis_pb2
 
 if TYPE_CHECKING:
@@ -26,7 +24,6 @@ Labels = Mapping[str, float]
 PRIORITIES = {"interactive": synthesis_pb2.PRIORITY_INTERACTIVE, "bulk": synthesis_pb2.PRIORITY_BULK}
 CLEAN_UP = {None: reaction_pb2.CLEAN_UP_UNSPECIFIED, True: reaction_pb2.CLEAN_UP_ON,
             False: reaction_pb2.CLEAN_UP_OFF}
-LEVELS = ("auto", "off")
 
 _REQUEST_ID = re.compile(r"[!-~]{1,128}")
 
@@ -96,7 +93,7 @@ class SynthesisRequest:
             (:class:`duet_motion.JointRotations`). Not with the unit ``"sbu-normalised"``.
         up: the true vertical of the leader's world, ``[3]``, of any length but 0, for motion from a
             tilted camera: less than 45 degrees from ``leader.up_axis``. The follower is returned
-            tilted like the leader. None: ``leader.up_axis``, unless ``level`` finds another one.
+            tilted like the leader. None: ``leader.up_axis``.
         priority: ``"interactive"``, or ``"bulk"``, which yields to interactive calls.
         chunk_frames: frames per chunk of the reply. None: the server's default.
         request_id: identifies the call in the server's log: 1 to 128 printable ASCII characters
@@ -107,15 +104,10 @@ class SynthesisRequest:
         constraints: where joints of the follower must be in single frames (:class:`Constraint`). The
             server moves limbs or the body there, eased over the neighbouring frames;
             ``SynthesisResult.constraint_metres`` is what remains.
-        level: ``"auto"``: estimate the vertical from the leader (:func:`duet_motion.estimate_vertical`),
-            and use it as ``up`` if the evidence is strong. A :class:`duet_motion.VerticalEstimate` of
-            everybody whom the camera captured: the same with that estimate.
-            ``SynthesisResult.vertical`` reports it. ``"off"``: estimate nothing. Not with ``up``.
 
     Raises:
         ValueError: an argument is invalid for every server. The message has the form
             ``field: expected ..., got ...``.
-        FileNotFoundError: ``level`` is ``"auto"`` and the program `duet` is missing.
     """
 
     leader: Motion
@@ -136,9 +128,6 @@ class SynthesisRequest:
     timeout: Optional[float] = None
     candidates: int = 1
     constraints: Sequence[Constraint] = ()
-    level: Union[str, VerticalEstimate] = "off"
-    vertical: Optional[VerticalEstimate] = dataclasses.field(init=False, default=None)
-    """What ``level`` found. None if it is ``"off"``."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.leader, Motion):
@@ -161,23 +150,6 @@ class SynthesisRequest:
         if self.timeout is not None:
             checked_number("timeout", self.timeout, above=0)
         check_constraints(self.constraints)
-        object.__setattr__(self, "vertical", self._find_vertical())
-
-    def _find_vertical(self) -> Optional[VerticalEstimate]:
-        known = self.level if isinstance(self.level, VerticalEstimate) else None
-        if known is None and self.level not in LEVELS:
-            raise ValueError(f"level: expected {' or '.join(LEVELS)}, or a "
-                             f"duet_motion.VerticalEstimate, got {short(self.level)}")
-        if self.level == "off":
-            return None
-        if self.up is not None:
-            raise ValueError(f"level: expected 'off' beside up, got {short(self.level)}")
-        if known is not None:
-            return known
-        try:
-            return estimate_vertical(self.leader)
-        except ValueError as error:
-            raise ValueError(f"level: {error}") from None
 
 
 def check_weights(labels: Optional[Labels], keyframes: Optional[Mapping[int, Labels]]) -> None:
@@ -243,11 +215,8 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
         fill_start(request.follower_start, out.follower_start)
     if request.partner_direction is not None:
         out.partner_direction.CopyFrom(direction(request.partner_direction))
-    up = request.up
-    if request.vertical is not None and request.vertical.verdict == "tilted":
-        up = request.vertical.up
-    if up is not None:
-        out.up.CopyFrom(direction(up))
+    if request.up is not None:
+        out.up.CopyFrom(direction(request.up))
     for constraint in request.constraints:
         x, y, z = floats(constraint.position)
         out.constraints.add(

@@ -141,22 +141,6 @@ TEST_F(MotionCommandsTest, InspectPrintsJson) {
   EXPECT_EQ(person["joints"][0]["parts"], json::parse(R"([{"joint": "head", "weight": 1.0}])"));
 }
 
-TEST_F(MotionCommandsTest, InspectPrintsTheTiltOfEachFileAndOfAllTogether) {
-  const motion::Clip tilted{leader_.joint_names, 15,
-                            test::Tilted(test::TurningMotion(15), {0, 1, 0.2f})};
-  ASSERT_THAT(formats::WritePair(folder_ / "tilted.csv", {tilted, tilted}, motion::SbuSkeleton()),
-              IsOk());
-  ASSERT_EQ(Run({"inspect", Path("tilted.csv"), Path("one.bvh")}), 0);
-  EXPECT_THAT(out(), AllOf(HasSubstr("  tilt        tilted by 11."), HasSubstr("; vertical "),
-                           HasSubstr("; feet rest in "),
-                           HasSubstr("all files, if one camera captured them\n  tilt ")));
-  const json report = RunJson({"inspect", "--json", Path("tilted.csv"), Path("one.bvh")});
-  EXPECT_EQ(report["files"][0]["tilt"]["verdict"], "tilted");
-  EXPECT_NEAR(report["files"][0]["tilt"]["up"][2], 0.196, 0.02);
-  EXPECT_EQ(report["files"][1]["tilt"]["verdict"], "unknown");
-  EXPECT_GT(report["tilt"]["places"], 0);
-}
-
 TEST_F(MotionCommandsTest, InspectNamesWhatIsMissing) {
   WriteTestFile(folder_ / "odd.bvh",
                 absl::StrReplaceAll(ReadTestFile(folder_ / "one.bvh"), {{"left_hand", "paw"}}));

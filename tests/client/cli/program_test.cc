@@ -178,32 +178,6 @@ TEST_F(ProgramTest, WritesTheFollowersRotationsToJson) {
   EXPECT_THAT(err(), HasSubstr("reply_rotations: expected --out FILE.json, which holds them, got"));
 }
 
-TEST_F(ProgramTest, LevelsATiltedLeaderIfTheEvidenceIsStrong) {
-  const motion::Vec3 up = {0, 1, 0.2f};
-  const motion::Clip tilted{leader_.joint_names, 15, test::Tilted(test::TurningMotion(15), up)};
-  ASSERT_THAT(formats::WritePair(folder_ / "tilted.csv", {tilted, tilted}, motion::SbuSkeleton()),
-              IsOk());
-  const auto run = [&](const std::string& leader, const Strings& flags) {
-    EXPECT_EQ(Run(Strings{"synthesize", "--leader", Path(leader), "--label", "kick", "--out",
-                          Path("pair.json")} +
-                  flags),
-              0)
-        << err();
-    return sent_.back().up;
-  };
-  const std::optional<motion::Vec3> sent = run("tilted.csv", {});
-  ASSERT_TRUE(sent.has_value());
-  EXPECT_LT(Distance(*sent, up / Norm(up)), 0.03f);
-  EXPECT_THAT(out(), HasSubstr("          levelled: tilted by 11."));
-  run("tilted.csv", {"--json"});
-  EXPECT_NEAR(nlohmann::json::parse(out())["up"][2], 0.196, 0.02);
-  EXPECT_EQ(run("leader.csv", {}), std::nullopt);
-  EXPECT_THAT(out(), HasSubstr("not levelled: "));
-  WriteTestFile(folder_ / "request", "up { y: 1 }");
-  EXPECT_EQ(run("tilted.csv", {"--request", Path("request")}), (motion::Vec3{0, 1, 0}));
-  EXPECT_THAT(out(), Not(HasSubstr("levelled")));
-}
-
 TEST_F(ProgramTest, SendsTheFlagsAndTheRequestOfAFile) {
   WriteTestFile(folder_ / "request",
                 "priority: PRIORITY_BULK chunk_frames: 8 clean_up: CLEAN_UP_ON seed: 1 "
