@@ -30,11 +30,10 @@ enum class MessageSyntax { kTextFormat, kJson };
 // Replaces `message` by the content of `text`; on an error, by the part that could be read. Rejects
 // unknown and repeated fields.
 //
-// Errors: INVALID_ARGUMENT with one line per error, in the order of the file: "line 3:5: ...". The
-// text format reports every unknown field and the first other error. JSON reports every wrong
-// field, or the first syntax error.
+// Errors: INVALID_ARGUMENT. The text format reports every unknown field and the first other error,
+// one line each: "line 3:5: ...". JSON reports the first error, with the path of its field.
 //
-// If `places` is not null, it receives the place of each field that the text sets.
+// If `places` is not null, it receives the place of each field that a text format sets.
 absl::Status ParseMessage(absl::string_view text, MessageSyntax syntax,
                           google::protobuf::Message* message, FieldPlaces* places = nullptr);
 

@@ -84,8 +84,9 @@ void ReadFile(const std::string& path, CommandLine* command_line) {
   messages::FieldPlaces places;
   AddErrors(ReadConfigFile(path, &config, &places), command_line);
   const auto source = [&](const std::string& field) {
-    const messages::Place place = places[field];
-    return absl::StrCat("file ", path, ":", place.line, ":", place.column);
+    const auto place = places.find(field);  // JSON has none
+    if (place == places.end()) return absl::StrCat("file ", path);
+    return absl::StrCat("file ", path, ":", place->second.line, ":", place->second.column);
   };
   Override(config, source, command_line);
 }

@@ -18,8 +18,10 @@ TEST(ParseMessage, ReadsBothSyntaxesAndForgetsWhatWasThere) {
   ASSERT_THAT(ParseMessage("seconds: 3", MessageSyntax::kTextFormat, &message), IsOk());
   EXPECT_EQ(message.seconds(), 3);
   EXPECT_EQ(message.nanos(), 0);
-  ASSERT_THAT(ParseMessage("\"5s\"", MessageSyntax::kJson, &message), IsOk());
-  EXPECT_EQ(message.seconds(), 5);
+  google::protobuf::Api api;
+  api.set_version("1");
+  ASSERT_THAT(ParseMessage("\xEF\xBB\xBF {\"name\": \"a\"}", MessageSyntax::kJson, &api), IsOk());
+  EXPECT_EQ(api.name() + api.version(), "a");
 }
 
 TEST(ParseMessage, SaysWhereTheFirstErrorIs) {
@@ -32,10 +34,9 @@ TEST(ParseMessage, SaysWhereTheFirstErrorIs) {
 }
 
 TEST(ParseMessage, AnErrorIsALineOfPrintableText) {
-  google::protobuf::Duration message;
+  google::protobuf::Api message;
   for (const MessageSyntax syntax : {MessageSyntax::kTextFormat, MessageSyntax::kJson}) {
-    const std::string text =
-        syntax == MessageSyntax::kJson ? "{\"seconds\": \x7f\r}" : "seconds: \x7f\r";
+    const std::string text = syntax == MessageSyntax::kJson ? "{\"a\x7f\": 1}" : "version: \x7f\r";
     const absl::Status status = ParseMessage(text, syntax, &message);
     EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\\x7f")));
   }
@@ -48,11 +49,6 @@ std::string PlaceOf(const FieldPlaces& places, const std::string& field) {
   return std::to_string(place->second.line) + ":" + std::to_string(place->second.column);
 }
 
-constexpr char kJson[] = R"({
-  "name": "a \"b\" {",
-  "methods": [{"name": "x"},
-              {"name": "y"}], "sourceContext": {"file_name": "f"}
-})";
 constexpr char kText[] = R"(name: "a"
   methods { name: "x" }
 methods { name: "y" } source_context { file_name: "f" })";
@@ -60,37 +56,27 @@ methods { name: "y" } source_context { file_name: "f" })";
 TEST(ParseMessage, TellsWhereEachFieldIs) {
   google::protobuf::Api api;
   FieldPlaces places;
-  ASSERT_THAT(ParseMessage(kJson, MessageSyntax::kJson, &api, &places), IsOk());
-  EXPECT_EQ(PlaceOf(places, "name"), "2:3");
-  EXPECT_EQ(PlaceOf(places, "methods[0]"), "3:15");
-  EXPECT_EQ(PlaceOf(places, "methods[1]"), "4:15");
-  EXPECT_EQ(PlaceOf(places, "source_context"), "4:31");
-  EXPECT_EQ(PlaceOf(places, "version"), "nowhere");
   ASSERT_THAT(ParseMessage(kText, MessageSyntax::kTextFormat, &api, &places), IsOk());
   EXPECT_EQ(PlaceOf(places, "name"), "1:1");
   EXPECT_EQ(PlaceOf(places, "methods[0]"), "2:3");
   EXPECT_EQ(PlaceOf(places, "methods[1]"), "3:1");
   EXPECT_EQ(PlaceOf(places, "source_context"), "3:23");
+  EXPECT_EQ(PlaceOf(places, "version"), "nowhere");
 }
 
-TEST(ParseMessage, TellsEverythingThatIsWrongWithJson) {
+TEST(ParseMessage, NamesTheFieldThatIsWrongInJson) {
   google::protobuf::Api api;
-  const absl::Status status = ParseMessage(R"({
-  "nam": "a",
-  "version": "1",
-  "syntax": "SYNTAX_PROTO9",
-  "methods": [{"name": "x"},
-              {"request": "y"}],
-  "version": "2"
-})",
-                                           MessageSyntax::kJson, &api);
-  EXPECT_THAT(
-      status,
-      StatusIs(absl::StatusCode::kInvalidArgument,
-               AllOf(StartsWith("line 2:3: there is no field \"nam\"; did you mean name?\n"),
-                     HasSubstr("\nline 4:3: (syntax)"), HasSubstr("\nline 6:15: "),
-                     HasSubstr("methods[1]"), HasSubstr("\nline 7:3: version: is repeated"))));
-  EXPECT_EQ(api.version(), "2") << "what is right is read all the same";
+  const std::pair<const char*, const char*> cases[] = {
+      {R"({"nam": "a"})", "nam"},
+      {R"({"methods": [{"name": "x"}, {"request": "y"}]})", "methods[1]"},
+      {R"({"syntax": "SYNTAX_PROTO9"})", "syntax"},
+      {R"({"version": "1", "version": "2"})", "\"version\" is repeated"},
+      {R"({"version": "1",})", "not JSON at byte 17"},
+      {"[]", "not a JSON object"}};
+  for (const auto& [text, message] : cases) {
+    EXPECT_THAT(ParseMessage(text, MessageSyntax::kJson, &api),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message)));
+  }
 }
 
 TEST(ParseMessage, TellsEveryUnknownFieldOfTheTextFormat) {
