@@ -57,6 +57,28 @@ struct ImportReport {
 // is off, or if it is not a data set.
 absl::Status Import(const ImportOptions& options, ImportReport* report);
 
+struct SolvedSequence {
+  std::string id;
+  double metres = 0;  // mean way of a joint of the person who was moved farther
+};
+
+struct SolveReport {
+  int sequences = 0;
+  double moved = 0;                        // mean way of a joint, metres
+  std::vector<SolvedSequence> most_moved;  // the five that were moved farthest, the farthest first
+};
+
+// Solves both people of every sequence of a data set (solver/person.h) and writes the result to
+// `out` as a data set of your own: in metres, level, with the same sequences, leaders, subjects,
+// classes and time lines. Where bones vary, as in captures of a depth camera, the two people of a
+// sequence get one floor between theirs; where they do not, everybody keeps the own floor, because
+// shoes differ.
+//
+// Errors: those of ReadDataset for `from`; of CheckOut and WriteDataset for `out`; INVALID_ARGUMENT
+// naming what the skeleton lacks.
+absl::Status Solve(const std::filesystem::path& from, const std::filesystem::path& out,
+                   bool overwrite, SolveReport* report);
+
 }  // namespace duet::importing
 
 #endif  // DUET_MODEL_IMPORTING_IMPORT_H_

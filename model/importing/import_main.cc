@@ -19,7 +19,6 @@
 #include "model/base/program_flags.h"
 #include "model/base/program_output.h"
 #include "model/importing/import.h"
-#include "model/importing/solve.h"
 #include "model/motion/coordinates.h"
 
 namespace duet::importing {
@@ -124,24 +123,8 @@ void Print(const ImportReport& report) {
   }
 }
 
-void PrintChange(const char* what, int digits, double before, double after) {
-  std::cout << absl::StrFormat("%-36s%10.*f%10.*f\n", what, digits, before, digits, after);
-}
-
 void Print(const SolveReport& report) {
-  const BodyFigures &before = report.before, &after = report.after;
-  std::cout << absl::StrFormat("moved %.1f cm on average", report.moved * 100);
-  for (const MovedPart& one : report.parts) {
-    std::cout << absl::StrFormat(", %s %.1f", one.part, one.metres * 100);
-  }
-  std::cout << "\n" << absl::StrFormat("%-36s%10s%10s\n", "", "before", "after");
-  PrintChange("deviation of bones, mm", 1, before.bone_noise * 1000, after.bone_noise * 1000);
-  PrintChange("narrowest hips, of their width", 2, before.narrowest_hips, after.narrowest_hips);
-  PrintChange("widest hips, of their width", 2, before.widest_hips, after.widest_hips);
-  PrintChange("bend of the knees, degrees", 1, before.knee_degrees, after.knee_degrees);
-  PrintChange("speed of the slower foot, cm/s", 1, before.slower_foot * 100,
-              after.slower_foot * 100);
-  PrintChange("height of hips over leg length", 3, before.hips_over_leg, after.hips_over_leg);
+  std::cout << absl::StrFormat("moved %.1f cm on average; farthest:\n", report.moved * 100);
   for (const SolvedSequence& one : report.most_moved) {
     std::cout << absl::StrFormat("moved %.1f cm: %s\n", one.metres * 100, one.id);
   }

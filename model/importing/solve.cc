@@ -1,17 +1,13 @@
-#include "model/importing/solve.h"
-
 #include <algorithm>
 #include <cstddef>
-#include <map>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
-#include "model/body/build.h"
-#include "model/body/limbs.h"
 #include "model/dataset/dataset.h"
+#include "model/importing/import.h"
 #include "model/importing/steps.h"
 #include "model/solver/body_model.h"
 #include "model/solver/person.h"
@@ -40,55 +36,6 @@ class Mean {
   double sum_ = 0;
   int count_ = 0;
 };
-
-// Adds people to the figures of their bodies.
-class BodyMeter {
- public:
-  BodyMeter(const motion::Skeleton& skeleton, double rate)
-      : skeleton_(skeleton), body_(body::FindBody(skeleton)), rate_(rate) {}
-
-  void Add(const Poses& person) {
-    const body::BuildFigures build = body::MeasureBuild(skeleton_, body_, person);
-    noise_.Add(solver::BodyModel::BoneNoise(skeleton_, person));
-    narrowest_ = std::min(narrowest_, build.narrowest_hips);
-    widest_ = std::max(widest_, build.widest_hips);
-    const motion::JointPair feet = *skeleton_.feet;
-    for (int t = 0; t < person.frame_count(); ++t) {
-      knees_.Add(build.knee_degrees);
-      height_.Add(build.hips_over_leg);
-      if (t > 0) foot_.Add(rate_ * std::min(Way(person, t, feet.left), Way(person, t, feet.right)));
-    }
-  }
-
-  BodyFigures figures() const {
-    return {noise_.value(), narrowest_, widest_, knees_.value(), foot_.value(), height_.value()};
-  }
-
- private:
-  static double Way(const Poses& person, int t, int joint) {
-    return Distance(person.at(t, joint), person.at(t - 1, joint));
-  }
-
-  const motion::Skeleton& skeleton_;
-  body::Body body_;
-  double rate_;
-  double narrowest_ = 1, widest_ = 1;
-  Mean noise_, knees_, foot_, height_;
-};
-
-// Which part of the body each joint counts as.
-std::vector<std::string> PartOfJoints(const motion::Skeleton& skeleton) {
-  const body::Body body = body::FindBody(skeleton);
-  std::vector<std::string> parts(skeleton.joint_names.size(), "trunk and head");
-  const auto name = [&](const body::Limb& limb, const char* middle, const char* end) {
-    parts[static_cast<std::size_t>(limb.middle)] = middle;
-    parts[static_cast<std::size_t>(limb.end)] = end;
-    for (const int joint : limb.beyond) parts[static_cast<std::size_t>(joint)] = end;
-  };
-  for (const body::Limb& arm : body.arms) name(arm, "elbows", "hands");
-  for (const body::Limb& leg : body.legs) name(leg, "knees", "feet");
-  return parts;
-}
 
 // The path of a solved sequence: its class's folder, and a name from its place in the data set.
 PairFiles PathOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence) {
@@ -129,29 +76,23 @@ dataset::DatasetLayout LayoutOf(const dataset::Dataset& dataset) {
   return layout;
 }
 
-// Solves a data set in place and measures it before and after.
+// Solves a data set in place.
 class Solving {
  public:
-  explicit Solving(dataset::Dataset* dataset)
-      : dataset_(*dataset),
-        skeleton_(dataset->skeleton),
-        parts_(PartOfJoints(dataset->skeleton)),
-        before_(dataset->skeleton, dataset->frame_rate_hz),
-        after_(dataset->skeleton, dataset->frame_rate_hz) {}
+  explicit Solving(dataset::Dataset* dataset) : dataset_(*dataset), skeleton_(dataset->skeleton) {}
 
   absl::Status Run(SolveReport* report) {
+    Mean noise;
     for (const dataset::Sequence& sequence : dataset_.sequences) {
-      before_.Add(sequence.pair.leader.poses);
-      before_.Add(sequence.pair.follower.poses);
+      noise.Add(solver::BodyModel::BoneNoise(skeleton_, sequence.pair.leader.poses));
+      noise.Add(solver::BodyModel::BoneNoise(skeleton_, sequence.pair.follower.poses));
     }
+    noisy_ = noise.value() > kNoisyBones;
     for (dataset::Sequence& sequence : dataset_.sequences) {
       if (absl::Status status = SolvePair(&sequence); !status.ok()) return status;
     }
     report->sequences = static_cast<int>(dataset_.sequences.size());
-    report->before = before_.figures();
-    report->after = after_.figures();
     report->moved = moved_.value();
-    for (const auto& [part, mean] : moved_parts_) report->parts.push_back({part, mean.value()});
     std::sort(sequences_.begin(), sequences_.end(),
               [](const SolvedSequence& a, const SolvedSequence& b) { return a.metres > b.metres; });
     sequences_.resize(std::min(sequences_.size(), kMostListed));
@@ -164,9 +105,7 @@ class Solving {
     Poses* const people[] = {&sequence->pair.leader.poses, &sequence->pair.follower.poses};
     double floors[] = {solver::StandingHeight(skeleton_, *people[0]),
                        solver::StandingHeight(skeleton_, *people[1])};
-    if (before_.figures().bone_noise > kNoisyBones) {
-      floors[0] = floors[1] = (floors[0] + floors[1]) / 2;
-    }
+    if (noisy_) floors[0] = floors[1] = (floors[0] + floors[1]) / 2;
     SolvedSequence moved{sequence->id, 0};
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       absl::StatusOr<Poses> solved =
@@ -175,7 +114,6 @@ class Solving {
         return absl::InvalidArgumentError(
             absl::StrCat(sequence->id, ": ", solved.status().message()));
       }
-      after_.Add(*solved);
       moved.metres = std::max(moved.metres, MeasureWay(*people[i], *solved));
       *people[i] = *std::move(solved);
     }
@@ -185,23 +123,18 @@ class Solving {
 
   double MeasureWay(const Poses& captured, const Poses& solved) {
     Mean own;
-    for (int t = 0; t < captured.frame_count(); ++t) {
-      for (int joint = 0; joint < captured.joint_count(); ++joint) {
-        const double way = Distance(captured.at(t, joint), solved.at(t, joint));
-        own.Add(way);
-        moved_.Add(way);
-        moved_parts_[parts_[static_cast<std::size_t>(joint)]].Add(way);
-      }
+    for (std::size_t i = 0; i < captured.all().size(); ++i) {
+      const double way = Distance(captured.all()[i], solved.all()[i]);
+      own.Add(way);
+      moved_.Add(way);
     }
     return own.value();
   }
 
   dataset::Dataset& dataset_;
   const motion::Skeleton& skeleton_;
-  std::vector<std::string> parts_;
-  BodyMeter before_, after_;
+  bool noisy_ = false;  // bones vary
   Mean moved_;
-  std::map<std::string, Mean> moved_parts_;
   std::vector<SolvedSequence> sequences_;
 };
 

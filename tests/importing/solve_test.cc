@@ -1,12 +1,12 @@
-#include "model/importing/solve.h"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
 #include "model/dataset/dataset.h"
+#include "model/importing/import.h"
 #include "model/importing/steps.h"
+#include "model/solver/body_model.h"
 #include "tests/solver/noisy_person.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -92,14 +92,9 @@ TEST_F(SolveTest, KeepsEverythingButThePositions) {
 
 TEST_F(SolveTest, PeopleOfADepthCameraGetBodiesOnOneFloor) {
   const dataset::Dataset solved = SolveAll({Pair("kick", "01", true)});
-  EXPECT_GT(report_.before.bone_noise, 0.01);
-  EXPECT_LT(report_.after.bone_noise, 0.001);
-  EXPECT_LT(report_.before.narrowest_hips, 0.9);
-  EXPECT_GT(report_.after.narrowest_hips, 0.99);
-  EXPECT_LT(report_.after.widest_hips, 1.01);
-  EXPECT_LT(report_.after.slower_foot, report_.before.slower_foot / 4);
+  const motion::Clip& leader = solved.sequences[0].pair.leader;
+  EXPECT_LT(solver::BodyModel::BoneNoise(solved.skeleton, leader.poses), 0.001);
   EXPECT_GT(report_.moved, 0.01);
-  EXPECT_THAT(report_.parts, SizeIs(5));
   ASSERT_THAT(report_.most_moved, SizeIs(1));
   EXPECT_EQ(report_.most_moved[0].id, "kick/01.txt");
   const auto lowest = [](const Poses& person) {
@@ -114,7 +109,6 @@ TEST_F(SolveTest, PeopleOfADepthCameraGetBodiesOnOneFloor) {
 TEST_F(SolveTest, PeopleOfAnOpticalCaptureKeepTheirFloors) {
   const dataset::Dataset solved = SolveAll({Pair("kick", "01", false)});
   EXPECT_LT(report_.moved, 0.02);
-  EXPECT_NEAR(report_.after.knee_degrees, report_.before.knee_degrees, 2);
   const motion::ClipPair& pair = solved.sequences[0].pair;
   const int head = solved.skeleton.Find("head");
   EXPECT_NEAR(pair.leader.at(0, head).y - pair.follower.at(0, head).y, 0.06, 0.01);
