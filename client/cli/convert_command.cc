@@ -14,7 +14,6 @@
 #include "client/cli/output.h"
 #include "client/cli/report.h"
 #include "model/base/file.h"
-#include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/resample.h"
@@ -103,7 +102,7 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments) {
   absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
-  absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(arguments.file, *options);
+  absl::StatusOr<ReadPeople> read = ReadAllPeople(arguments.file, *options);
   if (!read.ok()) return read.status();
   conversion.source = arguments.file.string();
   conversion.people = std::move(read->people);

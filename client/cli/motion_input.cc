@@ -145,12 +145,24 @@ absl::StatusOr<motion::Clip> ReadMotion(const std::filesystem::path& file,
   return clip;
 }
 
-absl::StatusOr<formats::ReadPeople> ReadAllPeople(const std::filesystem::path& file,
-                                                  const formats::ReadOptions& options) {
+absl::StatusOr<ReadPeople> ReadAllPeople(const std::filesystem::path& file,
+                                         const formats::ReadOptions& options) {
   absl::Status status = formats::CheckReadable(file, options.format);
   if (!status.ok()) return status;
-  return formats::ReadAllPeople(
-      [&file](const formats::ReadOptions& person) { return ReadMotion(file, person); }, options);
+  ReadPeople all;
+  retargeting::ReadingReport report;
+  formats::ReadOptions reading = options;
+  reading.report = &report;
+  for (const formats::Side side : {formats::Side::kLeft, formats::Side::kRight}) {
+    reading.side = side;
+    absl::StatusOr<motion::Clip> person = ReadMotion(file, reading);
+    if (!person.ok()) return person.status();
+    all.people.push_back(*std::move(person));
+    if (side == formats::Side::kLeft) all.notes = report.Notes();
+    if (report.people < 2) break;
+    reading.report = nullptr;
+  }
+  return all;
 }
 
 absl::StatusOr<retargeting::JointOverrides> ReadJoints(const std::vector<std::string>& joint_map) {

@@ -48,9 +48,15 @@ absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text);
 // Like formats::ReadLeader. Warns in the report of a person of no likely size.
 absl::StatusOr<motion::Clip> ReadMotion(const std::filesystem::path& file,
                                         const formats::ReadOptions& options);
-// The same for all people of a file that exists and has a known format.
-absl::StatusOr<formats::ReadPeople> ReadAllPeople(const std::filesystem::path& file,
-                                                  const formats::ReadOptions& options);
+
+// All people of a file, at most two.
+struct ReadPeople {
+  std::vector<motion::Clip> people;
+  std::vector<std::string> notes;  // on how the first was read
+};
+// Like ReadMotion, for a file that exists and has a known format.
+absl::StatusOr<ReadPeople> ReadAllPeople(const std::filesystem::path& file,
+                                         const formats::ReadOptions& options);
 
 // The values of --joint-map. A pair overrides a line of a file.
 absl::StatusOr<retargeting::JointOverrides> ReadJoints(const std::vector<std::string>& joint_map);

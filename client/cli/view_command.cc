@@ -79,11 +79,11 @@ Take ParseTake(const std::string& text) {
 
 // Reads the motions of a take's files.
 absl::Status Read(const formats::ReadOptions& options, formats::Side leader_side, Take* take) {
-  absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(take->files[0], options);
+  absl::StatusOr<ReadPeople> read = ReadAllPeople(take->files[0], options);
   if (!read.ok()) return read.status();
   std::vector<motion::Clip>& people = read->people;
   if (take->files.size() > 1) {
-    absl::StatusOr<formats::ReadPeople> other = ReadAllPeople(take->files[1], options);
+    absl::StatusOr<ReadPeople> other = ReadAllPeople(take->files[1], options);
     if (!other.ok()) return other.status();
     people = {std::move(people[0]), std::move(other->people[0])};
   } else if (people.size() > 1 && leader_side == formats::Side::kRight) {

@@ -16,7 +16,6 @@
 #include "model/formats/flat/flat_files.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_motion.h"
-#include "model/formats/reading.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
@@ -33,22 +32,50 @@ namespace fs = std::filesystem;
 using retargeting::Origin;
 using retargeting::Setting;
 
-// A motion's name and folder.
-struct Source {
-  std::string name;                // for errors
-  std::optional<fs::path> folder;  // of further files; absent for a pipe
+bool IsGltf(Format format) { return format == Format::kGltf || format == Format::kGlb; }
 
-  // `what` names the kind of file, with its article.
-  absl::StatusOr<std::string> ReadBeside(const std::string& file, const char* what) const {
-    if (folder.has_value()) {
-      return ReadFileBeside(name, file, what);
-    }
-    return absl::InvalidArgumentError(absl::StrCat(name, ": expected ", what, " ",
-                                                   base::Quoted(file),
-                                                   " in the same folder, got a motion without a "
-                                                   "folder; pass both as files"));
+// The index of the person in the file.
+int PersonOf(const ReadOptions& options) { return options.side == Side::kLeft ? 0 : 1; }
+
+retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& options) {
+  retargeting::CharacterOptions character;
+  character.skeleton = options.skeleton;
+  character.joint_overrides = options.joint_overrides;
+  character.metres_per_unit = options.metres_per_unit;
+  if (options.coordinates.has_value()) character.up_axis = options.coordinates->up_axis;
+  character.report = options.report;
+  return character;
+}
+
+constexpr char kBuffer[] = "a buffer";
+
+// The folder of the file that a path leads to; empty if there is no such file.
+fs::path FolderOf(const fs::path& path) {
+  std::error_code error;
+  const fs::path target = fs::canonical(path, error);
+  return error ? fs::path() : target.parent_path();
+}
+
+// Reads the file `name` in the folder of `document`, which names it. Symbolic links are followed
+// only to files in the same folder, or in the folder to which `document` itself is a link.
+absl::StatusOr<std::string> ReadFileBeside(const fs::path& document, const std::string& name) {
+  const fs::path path = document.parent_path() / name;
+  std::error_code error;
+  const fs::path target = fs::canonical(path, error);
+  if (error) return base::ReadFile(path, motion::kMaxMotionFileBytes, kBuffer);
+  const fs::path here = document.parent_path().empty() ? "." : document.parent_path();
+  const fs::path folder = fs::canonical(here, error);
+  if (target.parent_path() != folder && target.parent_path() != FolderOf(document)) {
+    return absl::InvalidArgumentError(absl::StrCat(path.string(), ": expected ", kBuffer,
+                                                   " in the folder of ", document.string(),
+                                                   ", got a link to a file in another folder"));
   }
-};
+  return base::ReadFile(target, motion::kMaxMotionFileBytes, kBuffer);
+}
+
+gltf::GltfFileReader FilesBeside(const fs::path& document) {
+  return [document](const std::string& name) { return ReadFileBeside(document, name); };
+}
 
 void Remark(std::string what, const ReadOptions& options) {
   if (options.report != nullptr) options.report->remarks.push_back(std::move(what));
@@ -192,17 +219,14 @@ absl::StatusOr<motion::Clip> ReadBvhPerson(const std::string& text, const std::s
   return FromBvh(*document, source, bvh);
 }
 
-absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const Source& source,
+absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const fs::path& path,
                                             const ReadOptions& options) {
-  absl::StatusOr<gltf::GltfDocument> document = gltf::ParseGltf(content, source.name);
+  absl::StatusOr<gltf::GltfDocument> document = gltf::ParseGltf(content, path.string());
   if (!document.ok()) return document.status();
   gltf::GltfImportOptions gltf{CharacterOptionsOf(options), PersonOf(options),
                                options.frame_rate_hz};
   gltf.animation = options.animation;
-  const auto read_beside = [&source](const std::string& name) {
-    return source.ReadBeside(name, "a buffer");
-  };
-  return FromGltf(*document, source.name, read_beside, gltf);
+  return FromGltf(*document, path.string(), FilesBeside(path), gltf);
 }
 
 absl::StatusOr<motion::Clip> ReadNpyPerson(const std::string& content, const std::string& source,
@@ -233,28 +257,29 @@ const char* FormatTitle(Format format) {
 }
 
 absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
-                                        const Source& source, const ReadOptions& options) {
+                                        const fs::path& path, const ReadOptions& options) {
+  const std::string source = path.string();
   if (options.report != nullptr) options.report->format = FormatTitle(format);
   if (options.animation.has_value() && !IsGltf(format)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(source.name, ": animation: expected none, because ", FormatTitle(format),
-                     " holds one motion, got ", base::Quoted(*options.animation)));
+    return absl::InvalidArgumentError(absl::StrCat(source, ": animation: expected none, because ",
+                                                   FormatTitle(format), " holds one motion, got ",
+                                                   base::Quoted(*options.animation)));
   }
-  if (IsGltf(format)) return ReadGltfPerson(content, source, options);
-  if (format == Format::kSbuText) return ReadSbuPerson(content, source.name, options);
-  if (format == Format::kBvh) return ReadBvhPerson(content, source.name, options);
-  if (format == Format::kNpy) return ReadNpyPerson(content, source.name, options);
+  if (IsGltf(format)) return ReadGltfPerson(content, path, options);
+  if (format == Format::kSbuText) return ReadSbuPerson(content, source, options);
+  if (format == Format::kBvh) return ReadBvhPerson(content, source, options);
+  if (format == Format::kNpy) return ReadNpyPerson(content, source, options);
   absl::StatusOr<motion::RecordedMotion> motion = format == Format::kCsv
-                                                      ? flat::ParseCsv(content, source.name)
-                                                      : flat::ParseJsonMotion(content, source.name);
+                                                      ? flat::ParseCsv(content, source)
+                                                      : flat::ParseJsonMotion(content, source);
   if (!motion.ok()) return motion.status();
-  return ToSkeleton(*motion, source.name, options);
+  return ToSkeleton(*motion, source, options);
 }
 
 // The person at the specified rate, or at the file's.
 absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& content,
-                                        const Source& source, const ReadOptions& options) {
-  absl::StatusOr<motion::Clip> clip = ReadPerson(format, content, source, options);
+                                        const fs::path& path, const ReadOptions& options) {
+  absl::StatusOr<motion::Clip> clip = ReadPerson(format, content, path, options);
   if (!clip.ok()) return clip.status();
   if (options.frame_rate_hz.has_value()) {
     clip->frame_rate_hz = *options.frame_rate_hz;
@@ -265,12 +290,12 @@ absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& conten
   }
   if (clip->frame_rate_hz > 0) {
     // A position within the limit in the file's unit may exceed it in metres.
-    const absl::Status valid = CheckClip(source.name, *clip);
+    const absl::Status valid = CheckClip(path.string(), *clip);
     if (!valid.ok()) return valid;
     return clip;
   }
   return MendedBy(absl::InvalidArgumentError(absl::StrCat(
-                      source.name, ": frame rate: expected one, got none in the file")),
+                      path.string(), ": frame rate: expected one, got none in the file")),
                   motion::ReadingSetting::kFrameRate);
 }
 
@@ -368,25 +393,24 @@ absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
 }
 
 absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
+  if (!options.format.has_value() && !IsReadable(path)) {
+    return UnknownExtension(path, kReadableExtensions);
+  }
+  absl::Status status = CheckOptions(options);
+  if (!status.ok()) return status;
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(path, motion::kMaxMotionFileBytes, "a motion");
+  if (!content.ok()) return content.status();
+  return ParseLeader(*content, path, options);
+}
+
+absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const fs::path& path,
+                                         const ReadOptions& options) {
   const std::optional<Format> format = options.format.has_value() ? options.format : FormatOf(path);
   if (!format.has_value()) return UnknownExtension(path, kReadableExtensions);
   absl::Status status = CheckOptions(options);
   if (!status.ok()) return status;
-  absl::StatusOr<std::string> content =
-      base::ReadFile(path, motion::kMaxMotionFileBytes, "a motion");
-  if (!content.ok()) return content.status();
-  return ReadAtRate(*format, *content, {path.string(), path.parent_path()}, options);
-}
-
-absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
-                                         const ReadOptions& options) {
-  if (!options.format.has_value()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": format: expected one of ", kReadableExtensions, ", got none"));
-  }
-  absl::Status status = CheckOptions(options);
-  if (!status.ok()) return status;
-  return ReadAtRate(*options.format, content, {name, std::nullopt}, options);
+  return ReadAtRate(*format, content, path, options);
 }
 
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path,
@@ -438,26 +462,6 @@ absl::StatusOr<std::vector<fs::path>> WritePeople(const fs::path& path, Format f
   return std::vector<fs::path>{path};
 }
 
-absl::StatusOr<ReadPeople> ReadAllPeople(PersonReader read, const ReadOptions& options) {
-  ReadPeople all;
-  retargeting::ReadingReport report;
-  ReadOptions first = options;
-  first.side = Side::kLeft;
-  first.report = &report;
-  absl::StatusOr<motion::Clip> person = read(first);
-  if (!person.ok()) return person.status();
-  all.people.push_back(*std::move(person));
-  all.notes = report.Notes();
-  if (report.people < 2) return all;
-  ReadOptions second = options;
-  second.side = Side::kRight;
-  second.report = nullptr;
-  person = read(second);
-  if (!person.ok()) return person.status();
-  all.people.push_back(*std::move(person));
-  return all;
-}
-
 absl::Status CheckReadable(const std::filesystem::path& path, const std::optional<Format>& format) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
@@ -478,6 +482,60 @@ absl::Status CheckFolderOf(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(folder, error)) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat(path.string(), ": there is no folder ", folder.string()));
+}
+
+namespace {
+
+// The feet of a rig may lack toes.
+retargeting::CharacterOptions RigOptionsOf(const FollowerRig& rig) {
+  retargeting::CharacterOptions options = CharacterOptionsOf(rig.reading);
+  options.missing_toes = retargeting::MissingToes::kAtTheFeet;
+  return options;
+}
+
+bvh::BvhImportOptions BvhOptionsOf(const FollowerRig& rig) {
+  return {RigOptionsOf(rig), PersonOf(rig.reading)};
+}
+
+gltf::GltfImportOptions GltfOptionsOf(const FollowerRig& rig) {
+  return {RigOptionsOf(rig), PersonOf(rig.reading), std::nullopt};
+}
+
+absl::StatusOr<std::string> OntoBvh(const motion::Clip& follower, const std::string& text,
+                                    const FollowerRig& rig) {
+  const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, rig.file.string());
+  if (!document.ok()) return document.status();
+  const absl::StatusOr<bvh::BvhDocument> written =
+      OntoBvhRig(follower, *document, rig.file.string(), BvhOptionsOf(rig));
+  if (!written.ok()) return written.status();
+  return FormatBvh(*written);
+}
+
+}  // namespace
+
+bool HasRig(Format format) { return format == Format::kBvh || IsGltf(format); }
+
+bool FitsRig(Format written, Format rig) {
+  return HasRig(rig) && (written == rig || (IsGltf(written) && IsGltf(rig)));
+}
+
+absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
+                                          Format format) {
+  const std::string source = rig.file.string();
+  const std::optional<Format> format_of_rig = FormatOf(rig.file);
+  if (!format_of_rig.has_value() || !FitsRig(format, *format_of_rig)) {
+    const std::string how = HowToConvert(rig.file);
+    return absl::InvalidArgumentError(
+        absl::StrCat(source, ": rig: expected ", kRigExtensions, "; ",
+                     how.empty() ? "it is written in its own format" : how));
+  }
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
+  if (!content.ok()) return content.status();
+  if (format == Format::kBvh) return OntoBvh(follower, *content, rig);
+  return gltf::OntoGltfRig(
+      follower, *content, source, FilesBeside(rig.file), GltfOptionsOf(rig),
+      format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
 }
 
 }  // namespace duet::formats

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
@@ -70,25 +69,14 @@ struct ReadOptions {
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 
-// Reads a motion that is not in a file but, for example, from a pipe. `content` is the whole
-// motion; `name` denotes it in messages. Requires options.format, and a motion that needs no second
-// file.
-absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
+// The same for the content of the file `path`, which need not exist.
+absl::StatusOr<motion::Clip> ParseLeader(const std::string& content,
+                                         const std::filesystem::path& path,
                                          const ReadOptions& options);
 
 // The first frame of any file that ReadLeader reads, as a follower's start. [skeleton joints]
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesystem::path& path,
                                                             const ReadOptions& options = {});
-
-// All people of a file, at most two.
-struct ReadPeople {
-  std::vector<motion::Clip> people;
-  std::vector<std::string> notes;  // on how the first was read
-};
-
-// Reads one person, like ReadLeader, from a source that the function knows.
-using PersonReader = absl::FunctionRef<absl::StatusOr<motion::Clip>(const ReadOptions&)>;
-absl::StatusOr<ReadPeople> ReadAllPeople(PersonReader read, const ReadOptions& options);
 
 inline constexpr double kCentimetre = 0.01;
 
@@ -147,6 +135,28 @@ absl::Status CheckReadable(const std::filesystem::path& path, const std::optiona
 
 // INVALID_ARGUMENT unless the folder that a file is to be written to exists.
 absl::Status CheckFolderOf(const std::filesystem::path& path);
+
+// A BVH or glTF whose rig the follower is written onto, and the options to read it.
+struct FollowerRig {
+  std::filesystem::path file;
+  ReadOptions reading;
+};
+
+// The formats that have a rig.
+inline constexpr char kRigExtensions[] = "a .bvh, .glb or .gltf";
+bool HasRig(Format format);
+
+// Whether a follower on a rig of the format `rig` can be written in the format `written`: a BVH as
+// a BVH, a .glb or .gltf as either of the two.
+bool FitsRig(Format written, Format rig);
+
+// Formats the follower on the rig: everything in the rig's file except the motion is kept
+// (bvh::OntoBvhRig, gltf::OntoGltfRig). Reports to rig.reading.report, like every reader.
+//
+// Errors: those of reading the rig; INVALID_ARGUMENT for an unsuitable rig, or a format that
+//         FitsRig does not accept.
+absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
+                                          Format format);
 
 }  // namespace duet::formats
 

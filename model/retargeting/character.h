@@ -16,6 +16,7 @@
 #include "model/retargeting/joint_mapping.h"
 #include "model/retargeting/joint_tree.h"
 #include "model/retargeting/reading_report.h"
+#include "model/retargeting/rotation.h"
 
 namespace duet::retargeting {
 
@@ -65,6 +66,89 @@ absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_vie
 absl::Status CheckBody(absl::string_view source, const motion::Skeleton& skeleton,
                        const motion::Poses& poses, const JointMap& map,
                        const std::vector<std::string>& file_joints);
+
+// The user's rig in its rest pose, as read from a file: the target of a motion transfer.
+//
+// Units: metres, y up, in the world.
+struct CharacterRig {
+  std::vector<std::string> names;
+  std::vector<int> parents;      // [names], an earlier joint; -1 for the root
+  std::vector<Vec3d> positions;  // [names]
+  // Joints that a file of the rig may translate in every frame, at least the root.
+  std::vector<bool> moves;  // [names]
+  // Maps the rig's joints to the skeleton's.
+  JointMap joints;
+};
+
+// One frame on a rig: the rotation of every joint from the rest pose, in world axes (an undriven
+// joint has its parent's rotation), and its position.
+struct CharacterPose {
+  std::vector<Quaternion> turns;  // [names]
+  std::vector<Vec3d> positions;   // [names]
+};
+
+// Returns the frame of a rig's motion that replaces its rest pose, because the rest pose is no
+// standing person: the frame in which the person stands most upright. Absent if the rest pose is a
+// standing person, or the motion's joints are not a person's.
+//
+// `rig` is at rest; `read` is its motion, with the joints that rig.joints gives.
+// Errors: INVALID_ARGUMENT naming `source` if there is no such frame either.
+absl::StatusOr<std::optional<int>> FindRestFrame(const CharacterRig& rig, const motion::Clip& read,
+                                                 absl::string_view source);
+
+// The rotation from a file's axes to the world's.
+Quaternion ToWorldAxes(motion::UpAxis up_axis);
+
+// The rig of a file whose joints have no rotation at rest (BVH): the tree's offsets define the
+// rest positions, with roots at the origin. Only roots are translated.
+//
+// `fit` is the result of ToClip for the same tree.
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit);
+
+// The same rig with another pose as its rest pose. `positions` are those of the tree's joints in
+// the file's unit and axes.
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
+                     const std::vector<Vec3d>& positions);
+
+// Reports that a frame of a rig's motion replaces its rest pose (FindRestFrame). `report` may be
+// null.
+void NoteRestFrame(int frame, ReadingReport* report);
+
+// The joints of a clip in their roles, for any skeleton whose joints are named as in
+// docs/formats.md. "left_hand" and "left_foot" of the body are the wrist and the ankle.
+struct BodyRoles {
+  JointMap body;  // motion::SbuSkeleton's joints from those of the clip
+  // Joints beyond the ankles and beyond the wrists; a skeleton may lack them.
+  std::optional<motion::JointPair> toes, hands;
+};
+
+// Errors: INVALID_ARGUMENT naming `field` and the joints that no name gives.
+absl::StatusOr<BodyRoles> FindBodyRoles(absl::string_view field, const motion::Clip& clip);
+
+// Maps through two maps: `first` gives the joints that `second` reads.
+JointMap Compose(const JointMap& first, const JointMap& second);
+
+// Transfers a clip of any skeleton of a person (FindBodyRoles) to a user's rig with any rest pose,
+// names and extra joints. The rig's bones keep their lengths.
+//
+// - Kabsch's fit over hips, shoulders and trunk rotates pelvis and chest. The spine's joints share
+//   the rotation between the two; neck and head share that of the head.
+// - Two-bone inverse kinematics places feet and hands at the clip's ankles and wrists, as far as
+//   the limbs reach, with elbows and knees on the clip's side. The pelvis height follows from the
+//   length of the rig's legs; the pelvis is lowered if a leg would not reach.
+// - The plane of the elbow or knee twists both bones of a limb. Standing feet are level.
+// - If the clip has toes, feet point at them, and the rig's toes stay level on the floor while a
+//   heel is up. If it has hands beyond the wrists, hands point at them; otherwise they keep their
+//   rotation relative to the forearm.
+// - Collar bones, fingers and all other joints keep their rest pose relative to their parents.
+//
+// Requires a rig whose joints map to the clip's. Shapes: returns [frames].
+// Errors: INVALID_ARGUMENT naming `source` for a rig that lacks its own hips, knees, feet,
+//         shoulders, elbows or hands, or whose limbs have no length; naming the follower if its
+//         joints are not those of a person.
+absl::StatusOr<std::vector<CharacterPose>> TransferToRig(const motion::Clip& clip,
+                                                         const CharacterRig& rig,
+                                                         absl::string_view source);
 
 }  // namespace duet::retargeting
 

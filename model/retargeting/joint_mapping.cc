@@ -1,22 +1,23 @@
 #include "model/retargeting/joint_mapping.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "absl/types/span.h"
 #include "model/base/nearest.h"
 #include "model/base/printable.h"
 #include "model/base/text.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/joint_names.h"
-#include "model/retargeting/limb_choice.h"
 
 namespace duet::retargeting {
 namespace {
@@ -70,16 +71,6 @@ std::vector<absl::Span<const motion::Vec3>> Spread(const motion::Poses& poses) {
   return frames;
 }
 
-// The length of the bones between two joints, one of which is below the other.
-double PathLength(const JointTree& tree, int a, int b) {
-  double length = 0;
-  for (int joint = std::max(a, b); joint > std::min(a, b);
-       joint = tree.parents[static_cast<size_t>(joint)]) {
-    length += Norm(tree.offsets[static_cast<size_t>(joint)]);
-  }
-  return length;
-}
-
 class Mapper {
  public:
   Mapper(absl::string_view source, const std::vector<std::string>& names,
@@ -91,17 +82,17 @@ class Mapper {
         readings_(readings) {
     found_.resize(skeleton.joint_names.size());
     why_.resize(skeleton.joint_names.size());
-    used_.resize(names.size(), false);
+    // MakeHuman's helpers (`__UpLeg_L` above `UpLeg_L`) have the names of joints.
+    for (const std::string& name : names) used_.push_back(absl::StartsWith(name, "__"));
   }
 
   absl::StatusOr<JointMap> MapPoses(const motion::Poses& poses, const JointOverrides& overrides) {
     absl::Status status = ApplyOverrides(overrides);
     if (!status.ok()) return status;
     measured_ = Spread(poses);
-    identity_ = MapIdentity();
-    if (!identity_) MapAliases();
-    ChooseAmongNamesakes(nullptr);
-    if (!identity_) PlaceTrunk();
+    const bool identical = MapIdentity();
+    if (!identical) MapAliases();
+    if (!identical) PlaceTrunk();
     return Finish();
   }
 
@@ -109,13 +100,12 @@ class Mapper {
                                    MissingToes missing_toes) {
     absl::Status status = ApplyOverrides(overrides);
     if (!status.ok()) return status;
-    identity_ = MapIdentity();
-    if (!identity_) MapAliases();
-    ChooseAmongNamesakes(&tree);
+    const bool identical = MapIdentity();
+    if (!identical) MapAliases();
     if (missing_toes == MissingToes::kAtTheFeet) PlaceMissingToes();
     const std::vector<motion::Vec3> straight = PullStraight(tree, FindLandmarks());
     measured_ = {straight};
-    if (!identity_) PlaceTrunk();
+    if (!identical) PlaceTrunk();
     absl::StatusOr<JointMap> map = Finish();
     if (map.ok()) map->straight = ApplyJointMap(*map, straight);
     return map;
@@ -158,61 +148,6 @@ class Mapper {
       if (!Found(joint) && !IsPlaced(joint)) MapByAlias(joint);
     }
     for (const char* side : {"left", "right"}) MapWristAndHand(side);
-  }
-
-  // Of several joints of one name, takes those that make limbs. `tree` is null without a hierarchy.
-  void ChooseAmongNamesakes(const JointTree* tree) {
-    for (const std::string side : {"left_", "right_"}) {
-      const std::string end = skeleton_.Find(side + "wrist") < 0 ? "hand" : "wrist";
-      ChooseLimbOf({side + "shoulder", side + "elbow", side + end}, tree);
-      ChooseLimbOf({side + "hip", side + "knee", side + "foot"}, tree);
-    }
-    for (std::size_t joint = 0; joint < found_.size(); ++joint) {
-      if (!found_[joint].has_value() || found_[joint]->terms.size() > 1) continue;
-      const std::size_t count = Namesakes(static_cast<int>(joint)).size();
-      if (count < 2 || !why_[joint].empty()) continue;
-      why_[joint] = absl::StrCat("the first of ", count, " joints of that name");
-    }
-  }
-
-  void ChooseLimbOf(const std::array<std::string, 3>& targets, const JointTree* tree) {
-    LimbCandidates candidates;
-    bool several = false;
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-      const int joint = skeleton_.Find(targets[i]);
-      if (!Found(joint) || SourceOf(joint).terms.size() > 1) return;
-      candidates[i] = Namesakes(joint);
-      several = several || candidates[i].size() > 1;
-    }
-    if (!several) return;
-    const std::array<int, 3> limb =
-        ChooseLimb(candidates, names_, tree, [this, tree](int a, int b) {
-          return tree == nullptr ? static_cast<double>(MeanDistance(Whole(a), Whole(b)))
-                                 : PathLength(*tree, a, b);
-        });
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-      if (candidates[i].size() < 2) continue;
-      const int joint = skeleton_.Find(targets[i]);
-      used_[static_cast<size_t>(SourceOf(joint).terms[0].joint)] = false;
-      Take(joint, limb[i]);
-      Note(joint, absl::StrCat("of ", candidates[i].size(),
-                               " joints of that name, the one that makes a limb"));
-    }
-  }
-
-  // The joints with the name of the one that a skeleton's joint has, in the file's order. The
-  // user's choice has none beside it.
-  std::vector<int> Namesakes(int joint) const {
-    const int found = found_[static_cast<size_t>(joint)]->terms[0].joint;
-    std::vector<int> joints;
-    for (std::size_t i = 0; i < parsed_.size() && given_.count(joint) == 0; ++i) {
-      const bool is_free = !used_[i] || static_cast<int>(i) == found;
-      const auto f = static_cast<size_t>(found);
-      const bool same = identity_ ? names_[i] == names_[f] : parsed_[i] == parsed_[f];
-      if (is_free && same) joints.push_back(static_cast<int>(i));
-    }
-    if (joints.empty()) joints.push_back(found);
-    return joints;
   }
 
   // Most files call the wrist a hand. A skeleton with both then has its hand at the knuckles: the
@@ -515,7 +450,6 @@ class Mapper {
   std::vector<ParsedJointName> parsed_;  // [names]
   const motion::Skeleton& skeleton_;
   std::vector<JointReading>* readings_;                   // may be null
-  bool identity_ = false;                                 // the file has the skeleton's names
   std::vector<bool> used_;                                // [names]
   std::vector<std::optional<JointSource>> found_;         // [skeleton joints]
   std::vector<absl::Span<const motion::Vec3>> measured_;  // poses in which distances are taken
@@ -544,6 +478,32 @@ std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const mo
   mapped.reserve(map.sources.size());
   for (const JointSource& source : map.sources) mapped.push_back(Evaluate(source, pose));
   return mapped;
+}
+
+absl::StatusOr<JointOverrides> ParseJointTable(absl::string_view text, absl::string_view source) {
+  JointOverrides table;
+  base::LineReader lines(base::SkipByteOrderMark(text));
+  for (absl::string_view line; lines.Next(&line);) {
+    line = absl::StripAsciiWhitespace(line);
+    if (line.empty() || line[0] == '#') continue;
+    const std::pair<absl::string_view, absl::string_view> joints =
+        absl::StrSplit(line, absl::MaxSplits('=', 1));
+    const absl::string_view target = absl::StripAsciiWhitespace(joints.first);
+    const absl::string_view name = absl::StripAsciiWhitespace(joints.second);
+    if (target.empty() || name.empty()) {
+      return base::ErrorAt(
+          source, lines.number(),
+          absl::StrCat("expected MODEL_JOINT=FILE_JOINT such as left_hand=LeftWrist, "
+                       "got ",
+                       base::Quoted(line)));
+    }
+    if (!table.emplace(target, name).second) {
+      return base::ErrorAt(
+          source, lines.number(),
+          absl::StrCat("expected each joint once, got ", base::Quoted(target), " twice"));
+    }
+  }
+  return table;
 }
 
 }  // namespace duet::retargeting

@@ -87,6 +87,32 @@ EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous);
 // The angles of every frame, each nearest to the previous frame's. Shapes: [frames] to [frames].
 std::vector<EulerAngles> ToEulerTrack(const std::vector<Quaternion>& turns, EulerOrder order);
 
+// An affine map: the images of the axes and of the origin.
+struct Affine {
+  Vec3d x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1}, origin;
+
+  Vec3d Turn(Vec3d a) const { return x * a.x + y * a.y + z * a.z; }
+  // Applies `inner` first, then this map.
+  Affine operator*(const Affine& inner) const {
+    return {Turn(inner.x), Turn(inner.y), Turn(inner.z), origin + Turn(inner.origin)};
+  }
+  // The mean factor by which lengths along the axes grow.
+  double Scale() const { return (Norm(x) + Norm(y) + Norm(z)) / 3; }
+};
+
+// Translation * rotation * scale, as hierarchies of nodes compose them.
+struct Parts {
+  Vec3d translation;
+  Quaternion rotation;
+  Vec3d scale = {1, 1, 1};
+};
+
+inline Affine FromParts(const Parts& parts) {
+  return {Rotate(parts.rotation, {1, 0, 0}) * parts.scale.x,
+          Rotate(parts.rotation, {0, 1, 0}) * parts.scale.y,
+          Rotate(parts.rotation, {0, 0, 1}) * parts.scale.z, parts.translation};
+}
+
 }  // namespace duet::retargeting
 
 #endif  // DUET_MODEL_RETARGETING_ROTATION_H_

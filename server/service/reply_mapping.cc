@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "model/motion/limb_lengths.h"
-#include "model/retargeting/character_rig.h"
+#include "model/retargeting/character.h"
 #include "model/retargeting/foot_pose.h"
 
 namespace duet::server::service {

@@ -12,7 +12,6 @@
 #include "gtest/gtest.h"
 #include "model/base/file.h"
 #include "model/formats/flat/flat_files.h"
-#include "model/formats/follower_rig.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -58,21 +57,6 @@ TEST_F(MotionFile, ReadsBackTheOnePersonThatItWrites) {
   }
 }
 
-TEST_F(MotionFile, ParsesAMotionThatIsNotAFile) {
-  const auto csv = FormatPeople(Format::kCsv, {pair_.leader, pair_.follower}, kSkeleton);
-  ASSERT_TRUE(csv.ok());
-  ReadOptions options;
-  options.side = Side::kRight;
-  EXPECT_FALSE(ParseLeader(*csv, "a pipe", options).ok());
-  options.format = Format::kCsv;
-  const auto follower = ParseLeader(*csv, "a pipe", options);
-  ASSERT_THAT(follower, IsOk());
-  EXPECT_EQ(LargestDistance(*follower, pair_.follower), 0);
-  options.format = Format::kBvh;
-  EXPECT_THAT(std::string(ParseLeader(*csv, "a pipe", options).status().message()),
-              HasSubstr("a pipe:1: "));
-}
-
 TEST_F(MotionFile, RejectsPeopleThatAFormatCannotHold) {
   const auto refused = [&](Format format, const std::vector<motion::Clip>& people) {
     return std::string(FormatPeople(format, people, kSkeleton).status().message());
@@ -107,22 +91,6 @@ TEST_F(MotionFile, ReadsBackThePairThatItWrites) {
       base::ReadFile(folder_ / "a.glb", 1 << 24, "a motion")->substr(0, 4) == "glTF",
       base::ReadFile(folder_ / "a.gltf", 1 << 24, "a motion")->at(0) != '{'};
   EXPECT_THAT(binary, ElementsAre(true, false));
-}
-
-TEST_F(MotionFile, ReadsAllPeopleLeaderFirst) {
-  const auto read = [](const fs::path& file) {
-    return ReadAllPeople([&](const ReadOptions& person) { return ReadLeader(file, person); }, {});
-  };
-  ASSERT_THAT(WritePair(folder_ / "two.csv", pair_, kSkeleton), IsOk());
-  const absl::StatusOr<ReadPeople> two = read(folder_ / "two.csv");
-  ASSERT_THAT(two, IsOk());
-  ASSERT_EQ(two->people.size(), 2u);
-  EXPECT_LT(LargestDistance(two->people[1], pair_.follower), 1e-5f);
-  ASSERT_THAT(WritePair(folder_ / "a.bvh", pair_, kSkeleton), IsOk());
-  const absl::StatusOr<ReadPeople> one = read(folder_ / "a.leader.bvh");
-  ASSERT_THAT(one, IsOk());
-  EXPECT_EQ(one->people.size(), 1u);
-  EXPECT_THAT(one->notes, Contains(HasSubstr("unit: centimetres")));
 }
 
 TEST_F(MotionFile, FilesAndFoldersAreCheckedBeforeTheyAreUsed) {

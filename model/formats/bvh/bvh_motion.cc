@@ -12,7 +12,7 @@
 #include "model/base/text.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/recorded_motion.h"
-#include "model/retargeting/character_rig.h"
+#include "model/retargeting/character.h"
 #include "model/retargeting/rig_fitting.h"
 #include "model/retargeting/rotation.h"
 

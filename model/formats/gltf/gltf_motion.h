@@ -12,7 +12,6 @@
 #include "model/motion/provenance.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/character.h"
-#include "model/retargeting/character_rig.h"
 
 // Converts between the motions of people and glTF documents: reading (gltf_import.cc), writing
 // (gltf_export.cc), and writing onto a character of a file (gltf_rig.cc).
@@ -72,13 +71,6 @@ absl::StatusOr<std::string> FormatGltf(const std::vector<motion::Clip>& people,
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
                                         absl::string_view source, const GltfFileReader& read_file,
                                         const GltfImportOptions& options, GltfContainer container);
-
-// Returns the rig of a character of a glTF file, to write in another format. Errors: those of
-// OntoGltfRig.
-absl::StatusOr<retargeting::CharacterRig> ReadGltfRig(absl::string_view content,
-                                                      absl::string_view source,
-                                                      const GltfFileReader& read_file,
-                                                      const GltfImportOptions& options);
 
 }  // namespace duet::formats::gltf
 

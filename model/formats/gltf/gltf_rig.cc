@@ -12,7 +12,7 @@
 #include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/coordinates.h"
-#include "model/retargeting/character_rig.h"
+#include "model/retargeting/character.h"
 
 namespace duet::formats::gltf {
 namespace {
@@ -210,15 +210,6 @@ absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view
 }
 
 }  // namespace
-
-absl::StatusOr<retargeting::CharacterRig> ReadGltfRig(absl::string_view content,
-                                                      absl::string_view source,
-                                                      const GltfFileReader& read_file,
-                                                      const GltfImportOptions& options) {
-  const absl::StatusOr<RigFile> file = ReadRigFile(content, source, read_file, options);
-  if (!file.ok()) return file.status();
-  return file->Animator().Rig();
-}
 
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
                                         absl::string_view source, const GltfFileReader& read_file,

@@ -168,18 +168,6 @@ int GltfWriter::AddWholeWeights(std::size_t vertices) {
   return accessor;
 }
 
-int GltfWriter::AddVertexJoints(const std::vector<std::array<int, 4>>& joints) {
-  std::vector<int> all;
-  for (const auto& of_vertex : joints) all.insert(all.end(), of_vertex.begin(), of_vertex.end());
-  return AddWhole<uint16_t>(kUnsignedShort, "VEC4", 4, all);
-}
-
-int GltfWriter::AddVertexWeights(const std::vector<std::array<float, 4>>& weights) {
-  std::vector<float> all;
-  for (const auto& of_vertex : weights) all.insert(all.end(), of_vertex.begin(), of_vertex.end());
-  return AddFloats("VEC4", 4, all);
-}
-
 std::string GltfWriter::Binary() {
   json_["buffers"] = {{{"byteLength", buffer_.size()}}};
   std::string text = Dump(json_);
@@ -222,10 +210,6 @@ void AnimationWriter::Translate(int node, const std::vector<Vec3d>& translations
 
 void AnimationWriter::Rotate(int node, const std::vector<Quaternion>& rotations) {
   AddTrack(node, "rotation", writer_.AddRotations(rotations));
-}
-
-void AnimationWriter::Scale(int node, const std::vector<Vec3d>& scales) {
-  AddTrack(node, "scale", writer_.AddVectors(scales));
 }
 
 void AnimationWriter::AddTrack(int node, const char* path, int values) {

@@ -1,7 +1,6 @@
 #ifndef DUET_MODEL_FORMATS_GLTF_GLTF_WRITER_H_
 #define DUET_MODEL_FORMATS_GLTF_GLTF_WRITER_H_
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,7 +9,6 @@
 
 #include "absl/strings/string_view.h"
 #include "model/motion/provenance.h"
-#include "model/retargeting/affine.h"
 #include "model/retargeting/mannequin.h"
 #include "model/retargeting/rotation.h"
 #include "nlohmann/json.hpp"
@@ -48,9 +46,6 @@ class GltfWriter {
   // Assigns one joint to each vertex, with weight 1.
   int AddVertexJoints(const std::vector<int>& joints, std::size_t joint_count);
   int AddWholeWeights(std::size_t vertices);
-  // Assigns several joints to each vertex, with weights that sum to 1.
-  int AddVertexJoints(const std::vector<std::array<int, 4>>& joints);
-  int AddVertexWeights(const std::vector<std::array<float, 4>>& weights);
 
   // Formats the file: binary, or text that embeds the buffer.
   std::string Binary();
@@ -81,7 +76,6 @@ class AnimationWriter {
   // Shapes: [frames], in the axes of the node's parent.
   void Translate(int node, const std::vector<retargeting::Vec3d>& translations);
   void Rotate(int node, const std::vector<retargeting::Quaternion>& rotations);
-  void Scale(int node, const std::vector<retargeting::Vec3d>& scales);
 
   // The animation's JSON.
   nlohmann::ordered_json Take() { return std::move(json_); }
