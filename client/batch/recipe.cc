@@ -16,7 +16,6 @@
 #include "absl/strings/str_split.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
-#include "model/base/printable.h"
 #include "model/base/sha256.h"
 #include "model/base/text.h"
 #include "model/messages/message_text.h"

@@ -6,8 +6,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/batch/text_values.h"
-#include "model/base/printable.h"
 #include "model/base/sha256.h"
+#include "model/base/text.h"
 
 namespace duet::client::batch {
 namespace {

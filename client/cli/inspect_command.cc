@@ -14,7 +14,7 @@
 #include "client/cli/motion_input.h"
 #include "client/cli/report.h"
 #include "model/base/counted.h"
-#include "model/base/printable.h"
+#include "model/base/text.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/reading_report.h"

@@ -6,7 +6,6 @@
 #include "client/cli/command.h"
 #include "client/cli/report.h"
 #include "model/base/text.h"
-#include "model/base/usage_text.h"
 
 namespace duet::client::cli {
 
@@ -32,7 +31,7 @@ int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironme
     const bool unknown = app.get_subcommands().empty() && !arguments.empty();
     *environment.err << (unknown
                              ? absl::StrCat("Expected a command, got ", base::Quoted(arguments[0]))
-                             : base::UsageText(error.what()))
+                             : std::string(error.what()))
                      << "\nRun with --help for more information.\n";
     return kExitUsage;
   }

@@ -12,7 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/descriptor.h"
-#include "model/base/printable.h"
+#include "model/base/text.h"
 
 namespace duet::base {
 namespace {

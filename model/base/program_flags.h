@@ -8,8 +8,7 @@
 namespace duet::base {
 
 // Parses a program's command line. Returns the exit code if the program should end: 0 after --help
-// or --version, whose text goes to `out`, and 2 after an error, which goes to `err` in the form of
-// all other errors (UsageText).
+// or --version, whose text goes to `out`, and 2 after an error, which goes to `err`.
 std::optional<int> ParseFlags(int argc, const char* const* argv, CLI::App* app, std::ostream* out,
                               std::ostream* err);
 // The same with the standard streams.

@@ -5,7 +5,6 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "model/base/printable.h"
 #include "model/base/text.h"
 
 namespace duet::base {

@@ -10,7 +10,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
-#include "model/base/printable.h"
 
 namespace duet::base {
 namespace {
@@ -40,6 +39,18 @@ void AppendShortest(std::string* out, Number value) {
   char buffer[32];
   const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
   out->append(buffer, result.ptr);
+}
+
+std::string WithEscapes(absl::string_view text, bool (*is_escaped)(unsigned char)) {
+  std::string line;
+  for (const char& byte : text) {
+    if (is_escaped(static_cast<unsigned char>(byte))) {
+      absl::StrAppend(&line, absl::CHexEscape({&byte, 1}));
+    } else {
+      line += byte;
+    }
+  }
+  return line;
 }
 
 }  // namespace
@@ -82,6 +93,16 @@ std::string Quoted(absl::string_view text) {
   std::string escaped = absl::CHexEscape(text.substr(0, kLongestQuote));
   absl::StrReplaceAll({{R"(\')", "'"}}, &escaped);  // needs no escape between double quotes
   return absl::StrCat("\"", escaped, shortened ? "...\"" : "\"");
+}
+
+std::string Printable(absl::string_view text, std::size_t longest) {
+  std::string line = WithEscapes(text.substr(0, longest),
+                                 [](unsigned char byte) { return !absl::ascii_isprint(byte); });
+  return text.size() > longest ? line + "..." : line;
+}
+
+std::string EscapeControls(absl::string_view text) {
+  return WithEscapes(text, [](unsigned char byte) { return absl::ascii_iscntrl(byte); });
 }
 
 absl::Status ErrorAt(absl::string_view source, int line, absl::string_view message) {

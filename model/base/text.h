@@ -34,6 +34,15 @@ void AppendFixed(std::string* out, double value, int decimals);
 inline constexpr std::size_t kLongestQuote = 64;
 std::string Quoted(absl::string_view text);
 
+// Makes untrusted `text` safe to print within a line: escapes every byte that is not printable
+// ASCII, and replaces everything after the first `longest` bytes by "...". Quotes are not escaped.
+// For a name, prefer Quoted.
+std::string Printable(absl::string_view text, std::size_t longest);
+
+// Escapes control characters, with which a name could move a terminal's cursor or end the line, and
+// keeps letters of every script. For names in reports; errors use Quoted or Printable.
+std::string EscapeControls(absl::string_view text);
+
 // INVALID_ARGUMENT "source:line: message" or "source:line:column: message" (both from 1).
 absl::Status ErrorAt(absl::string_view source, int line, absl::string_view message);
 absl::Status ErrorAt(absl::string_view source, int line, int column, absl::string_view message);

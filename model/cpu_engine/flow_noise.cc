@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "model/base/open_uniforms.h"
+#include "model/base/random.h"
 #include "model/cpu_engine/kernels/transformer.h"
 #include "model/engine/frame_noise.h"
 

@@ -13,7 +13,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
-#include "model/base/printable.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 

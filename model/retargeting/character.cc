@@ -12,7 +12,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/index.h"
-#include "model/base/printable.h"
 #include "model/base/text.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/poses.h"

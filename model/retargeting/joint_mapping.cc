@@ -14,7 +14,6 @@
 #include "absl/strings/str_split.h"
 #include "absl/types/span.h"
 #include "model/base/nearest.h"
-#include "model/base/printable.h"
 #include "model/base/text.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/joint_names.h"

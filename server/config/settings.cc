@@ -14,7 +14,6 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "model/base/printable.h"
 #include "model/base/text.h"
 #include "server/common/listen_address.h"
 

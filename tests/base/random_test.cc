@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "model/base/open_uniforms.h"
 #include "model/base/statistics.h"
 #include "tests/support/matchers.h"
 

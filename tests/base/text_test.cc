@@ -7,7 +7,6 @@
 
 #include "gmock/gmock.h"
 #include "model/base/nearest.h"
-#include "model/base/printable.h"
 #include "tests/support/matchers.h"
 
 namespace duet::base {

@@ -1,15 +1,14 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
-#include "model/base/hex.h"
 #include "model/base/text.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/motion/motion_limits.h"
@@ -55,12 +54,13 @@ float Value(const char* bytes, int component_type) {
 
 // "my%20file.bin" -> my file.bin. A % without a hex number stays: some programs do not escape it.
 std::string Unescaped(absl::string_view uri) {
-  const auto is_digit = [](char c) { return absl::ascii_isxdigit(static_cast<unsigned char>(c)); };
   std::string name;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     const absl::string_view digits = uri.substr(i + 1, 2);
-    if (uri[i] == '%' && digits.size() == 2 && is_digit(digits[0]) && is_digit(digits[1])) {
-      name += base::BytesOfHex(digits);
+    uint8_t byte = 0;
+    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    if (uri[i] == '%' && read.ptr == digits.data() + 2) {
+      name.push_back(static_cast<char>(byte));
       i += 2;
     } else {
       name.push_back(uri[i]);
