@@ -14,9 +14,9 @@
 #include "model/base/file.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
+#include "model/motion/coordinates.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
-#include "model/motion/stated_unit.h"
 #include "model/retargeting/joint_mapping.h"
 
 namespace duet::client::cli {

@@ -16,12 +16,12 @@
 #include "model/formats/flat/flat_files.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_motion.h"
+#include "model/motion/coordinates.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/sbu.h"
-#include "model/motion/stated_unit.h"
 #include "model/retargeting/character.h"
 
 namespace duet::formats {

@@ -93,32 +93,6 @@ struct Capture {
   motion::Clip second;
 };
 
-struct CaptureOptions {
-  motion::Skeleton skeleton;
-  retargeting::JointOverrides joint_overrides;
-  std::optional<double> frame_rate_hz;  // overrides the files' own
-  // Receives one note for each choice between several joints. May be null.
-  std::vector<std::string>* notes = nullptr;
-};
-
-// Reads both people. Formats with a hierarchy (BVH, glTF) keep the file's unit and axes. Every
-// other format is read in the coordinates that the file states; the default is metres, y up.
-//
-// Errors: INVALID_ARGUMENT naming the file, also if a file that must hold two people holds one.
-absl::StatusOr<Capture> ReadCapture(const std::filesystem::path& folder, const PairFiles& files,
-                                    const CaptureOptions& options);
-
-// Resamples both people to one rate and truncates the longer one. Returns their difference in
-// length, seconds.
-double Align(double rate_hz, Capture* capture);
-
-// INVALID_ARGUMENT unless these can be two people in one place, in metres, y up: with legs of a
-// person's length, and at a plausible distance from each other.
-absl::Status CheckPlausible(const Capture& capture, const motion::Skeleton& skeleton);
-
-// Cuts a capture into equal pieces of at most `longest` frames.
-std::vector<Capture> Cut(const Capture& capture, int longest);
-
 // A sequence to be written to a data set.
 struct ImportedSequence {
   Capture capture;  // metres, y up

@@ -25,6 +25,16 @@ struct Coordinates {
 std::optional<Coordinates> StatedCoordinates(const std::optional<LengthUnit>& unit,
                                              const std::optional<UpAxis>& up_axis);
 
+// The metres in one unit of a file, as a caller states them: directly, or else by the unit's name.
+// Absent if neither does, or for SBU's unit, which is no mere scale.
+inline std::optional<double> StatedMetresPerUnit(const std::optional<double>& metres_per_unit,
+                                                 const std::optional<LengthUnit>& unit) {
+  if (metres_per_unit.has_value()) return metres_per_unit;
+  if (unit == LengthUnit::kMetres) return 1;
+  if (unit == LengthUnit::kMillimetres) return 0.001;
+  return std::nullopt;
+}
+
 // Converts to and from metres, y up. The two are exact inverses up to rounding.
 Vec3 ToWorld(const Coordinates& coordinates, Vec3 position);
 Vec3 FromWorld(const Coordinates& coordinates, Vec3 position);

@@ -14,7 +14,6 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"
-#include "model/retargeting/joint_tree.h"
 #include "model/retargeting/reading_report.h"
 #include "model/retargeting/rotation.h"
 

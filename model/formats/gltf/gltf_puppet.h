@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/motion/vec3.h"
-#include "model/retargeting/joint_tree.h"
+#include "model/retargeting/joint_mapping.h"
 #include "model/retargeting/rotation.h"
 
 namespace duet::formats::gltf {

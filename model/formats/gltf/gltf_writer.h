@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "absl/strings/string_view.h"
-#include "model/motion/provenance.h"
-#include "model/retargeting/mannequin.h"
 #include "model/retargeting/rotation.h"
 #include "nlohmann/json.hpp"
 
@@ -87,23 +85,6 @@ class AnimationWriter {
   nlohmann::ordered_json json_;
   int times_;  // accessor
 };
-
-nlohmann::ordered_json ToArray(retargeting::Vec3d a);
-
-// Adds a skin of joints that are not rotated at rest, the nodes from `first_joint`. Returns its
-// index.
-int AddSkin(const std::string& name, int first_joint,
-            const std::vector<retargeting::Vec3d>& rest_positions, GltfWriter* writer);
-
-// Returns the index of the new material.
-int AddMaterial(const std::string& name, const retargeting::Look& look, GltfWriter* writer);
-
-// Returns a primitive of a mesh that is skinned to `joint_count` joints.
-nlohmann::ordered_json AddPrimitive(const retargeting::SkinnedMesh& mesh, std::size_t joint_count,
-                                    int material, GltfWriter* writer);
-
-// Formats the provenance of a follower for a scene's extras.
-nlohmann::ordered_json Extras(const motion::Provenance& provenance);
 
 }  // namespace duet::formats::gltf
 
