@@ -63,7 +63,6 @@ constexpr Target kTargets[] = {
     {"recipe_text", RecipeText},
     {"safetensors", Safetensors},
     {"sbu_text", SbuText},
-    {"server_config_json", ServerConfigJson},
     {"server_config_text", ServerConfigText},
     {"synthesis_fields", SynthesisFields},
     {"synthesis_request", SynthesisRequest},

@@ -103,27 +103,6 @@ Broken Handle(const v1::SynthesizeRequest& request) {
                       {absl::StatusCode::kInvalidArgument, absl::StatusCode::kFailedPrecondition});
 }
 
-Broken ServerConfig(absl::string_view input, bool json) {
-  using messages::MessageSyntax;
-  server::config::CommandLine line;
-  const absl::Status read = messages::ParseMessage(
-      input, json ? MessageSyntax::kJson : MessageSyntax::kTextFormat, &line.config);
-  if (!read.ok()) return CheckRefusal(read);
-  const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(line, kCores);
-  if (!options.ok()) return CheckRefusal(options.status());
-  // What is printed is a configuration file that says the same.
-  const std::string printed = server::config::PrintConfig(*options, {});
-  line.config.Clear();
-  if (!messages::ParseMessage(printed, MessageSyntax::kTextFormat, &line.config).ok()) {
-    return absl::StrCat("a printed configuration is none: ", printed);
-  }
-  const absl::StatusOr<v1::ServerConfig> again = ResolveSettings(line, kCores);
-  if (!again.ok()) return absl::StrCat("a printed configuration is refused: ", printed);
-  return server::config::PrintConfig(*again, {}) == printed
-             ? ""
-             : "a printed configuration says something else";
-}
-
 }  // namespace
 
 Broken SynthesisRequest(absl::string_view input) {
@@ -146,9 +125,25 @@ Broken SynthesisFields(absl::string_view input) {
   return read.ok() ? Handle(request) : CheckRefusal(read);
 }
 
-Broken ServerConfigText(absl::string_view input) { return ServerConfig(input, /*json=*/false); }
-
-Broken ServerConfigJson(absl::string_view input) { return ServerConfig(input, /*json=*/true); }
+Broken ServerConfigText(absl::string_view input) {
+  using messages::MessageSyntax;
+  server::config::CommandLine line;
+  const absl::Status read = messages::ParseMessage(input, MessageSyntax::kTextFormat, &line.config);
+  if (!read.ok()) return CheckRefusal(read);
+  const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(line, kCores);
+  if (!options.ok()) return CheckRefusal(options.status());
+  // What is printed is a configuration file that says the same.
+  const std::string printed = server::config::PrintConfig(*options, {});
+  line.config.Clear();
+  if (!messages::ParseMessage(printed, MessageSyntax::kTextFormat, &line.config).ok()) {
+    return absl::StrCat("a printed configuration is none: ", printed);
+  }
+  const absl::StatusOr<v1::ServerConfig> again = ResolveSettings(line, kCores);
+  if (!again.ok()) return absl::StrCat("a printed configuration is refused: ", printed);
+  return server::config::PrintConfig(*again, {}) == printed
+             ? ""
+             : "a printed configuration says something else";
+}
 
 Broken AccessFile(absl::string_view input) {
   const auto callers = server::security::ParseAccessList(Std(input), kSource);

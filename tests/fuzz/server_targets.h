@@ -10,7 +10,6 @@ namespace duet::fuzz {
 Broken SynthesisRequest(absl::string_view input);  // the bytes of a message
 Broken SynthesisFields(absl::string_view input);   // the same in text format
 Broken ServerConfigText(absl::string_view input);
-Broken ServerConfigJson(absl::string_view input);
 Broken AccessFile(absl::string_view input);
 Broken HttpRequest(absl::string_view input);   // of the metrics port
 Broken CallMetadata(absl::string_view input);  // traceparent, request id, peer: a line each

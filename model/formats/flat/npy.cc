@@ -53,16 +53,14 @@ absl::Status ParseShape(absl::string_view tuple, absl::string_view source,
   return absl::OkStatus();
 }
 
-// The header as it is written, and the bytes after it.
-struct NpyHeader {
-  std::string descr;          // with its quotes: "'<f4'"
-  std::string fortran_order;  // "False"
+// The values of an array, as the header describes them.
+struct NpyArray {
+  std::size_t value_bytes = 0;  // 4 or 8
   std::vector<int> shape;
   absl::string_view values;  // refers to the parsed bytes
 };
 
-// Checks the form of the header, not its values.
-absl::StatusOr<NpyHeader> ParseNpyHeader(absl::string_view bytes, absl::string_view source) {
+absl::StatusOr<NpyArray> ParseHeader(absl::string_view bytes, absl::string_view source) {
   if (!absl::ConsumePrefix(&bytes, kMagic) || bytes.size() < 4) {
     return Error(source, "expected a NumPy array, got a file that does not start with \\x93NUMPY");
   }
@@ -83,100 +81,71 @@ absl::StatusOr<NpyHeader> ParseNpyHeader(absl::string_view bytes, absl::string_v
                               " bytes, got ", length));
   }
   const absl::string_view dict = bytes.substr(0, length);
-  NpyHeader header;
-  header.descr = std::string(DictValue(dict, "descr"));
-  header.fortran_order = std::string(DictValue(dict, "fortran_order"));
-  header.values = bytes.substr(length);
-  absl::Status status = ParseShape(DictValue(dict, "shape"), source, &header.shape);
+  NpyArray array;
+  array.values = bytes.substr(length);
+  absl::Status status = ParseShape(DictValue(dict, "shape"), source, &array.shape);
   if (!status.ok()) return status;
-  return header;
+  const absl::string_view descr = DictValue(dict, "descr");
+  if (descr != "'<f4'" && descr != "'<f8'") {
+    return Error(
+        source,
+        absl::StrCat("descr: expected '<f4' or '<f8' (float32 or float64, little-endian), got ",
+                     base::Quoted(descr)));
+  }
+  array.value_bytes = descr == "'<f4'" ? 4 : 8;
+  const absl::string_view order = DictValue(dict, "fortran_order");
+  if (order == "False") return array;
+  return Error(source,
+               absl::StrCat("fortran_order: expected False (C order), got ", base::Quoted(order)));
 }
 
-class NpyParser {
- public:
-  NpyParser(NpyHeader header, absl::string_view source)
-      : bytes_(header.values), source_(source), header_(std::move(header)) {}
-
-  absl::StatusOr<motion::RecordedMotion> Parse(const std::vector<std::string>& joint_names) {
-    absl::Status status = CheckHeader(static_cast<int>(joint_names.size()));
-    if (!status.ok()) return status;
-    motion::RecordedMotion motion;
-    const int frames = header_.shape[header_.shape.size() - 3];
-    motion.people.resize(header_.shape.size() == 4 ? static_cast<size_t>(header_.shape[0]) : 1);
-    for (motion::Clip& person : motion.people) {
-      person.joint_names = joint_names;
-      person.poses = motion::Poses(frames, static_cast<int>(joint_names.size()));
-      status = ReadPositions(&person);
-      if (!status.ok()) return status;
-    }
-    return motion;
+// Whether the array has positions of so many joints, and all of them.
+absl::Status CheckShape(const NpyArray& array, int joints, absl::string_view source) {
+  const std::vector<int>& shape = array.shape;
+  const std::size_t rank = shape.size();
+  const bool people = rank == 4 && (shape[0] == 1 || shape[0] == 2);
+  if ((rank != 3 && !people) || shape[rank - 1] != 3 || shape[rank - 2] != joints ||
+      shape[rank - 3] < 1 || shape[rank - 3] > motion::kMaxMotionFrames) {
+    return Error(source, absl::StrCat("shape: expected (frames, ", joints, ", 3) or (2, frames, ",
+                                      joints, ", 3) with 1 to ", motion::kMaxMotionFrames,
+                                      " frames, got (", absl::StrJoin(shape, ", "), ")"));
   }
+  std::size_t expected = array.value_bytes;
+  for (int size : shape) expected *= static_cast<std::size_t>(size);
+  if (array.values.size() == expected) return absl::OkStatus();
+  return Error(source,
+               absl::StrCat("expected ", expected, " bytes of values, got ", array.values.size()));
+}
 
- private:
-  absl::Status Error(absl::string_view message) const {
-    return absl::InvalidArgumentError(absl::StrCat(source_, ": ", message));
+double TakeValue(NpyArray* array) {
+  double value = 0;
+  if (array->value_bytes == 4) {
+    float single = 0;
+    std::memcpy(&single, array->values.data(), sizeof(single));
+    value = static_cast<double>(single);
+  } else {
+    std::memcpy(&value, array->values.data(), sizeof(value));
   }
+  array->values.remove_prefix(array->value_bytes);
+  return value;
+}
 
-  absl::Status CheckHeader(int joints) const {
-    if (header_.descr != "'<f4'" && header_.descr != "'<f8'") {
-      return Error(
-          absl::StrCat("descr: expected '<f4' or '<f8' (float32 or float64, little-endian), got ",
-                       base::Quoted(header_.descr)));
-    }
-    if (header_.fortran_order != "False") {
-      return Error(absl::StrCat("fortran_order: expected False (C order), got ",
-                                base::Quoted(header_.fortran_order)));
-    }
-    const std::vector<int>& shape = header_.shape;
-    const std::size_t rank = shape.size();
-    const bool people = rank == 4 && (shape[0] == 1 || shape[0] == 2);
-    if ((rank != 3 && !people) || shape[rank - 1] != 3 || shape[rank - 2] != joints ||
-        shape[rank - 3] < 1 || shape[rank - 3] > motion::kMaxMotionFrames) {
-      return Error(absl::StrCat("shape: expected (frames, ", joints, ", 3) or (2, frames, ", joints,
-                                ", 3) with 1 to ", motion::kMaxMotionFrames, " frames, got (",
-                                absl::StrJoin(shape, ", "), ")"));
-    }
-    std::size_t expected = ValueBytes();
-    for (int size : shape) expected *= static_cast<std::size_t>(size);
-    if (bytes_.size() == expected) return absl::OkStatus();
-    return Error(absl::StrCat("expected ", expected, " bytes of values, got ", bytes_.size()));
-  }
-
-  std::size_t ValueBytes() const { return header_.descr == "'<f4'" ? 4 : 8; }
-
-  double TakeValue() {
-    double value = 0;
-    if (ValueBytes() == 4) {
-      float single = 0;
-      std::memcpy(&single, bytes_.data(), sizeof(single));
-      value = static_cast<double>(single);
-    } else {
-      std::memcpy(&value, bytes_.data(), sizeof(value));
-    }
-    bytes_.remove_prefix(ValueBytes());
-    return value;
-  }
-
-  absl::Status ReadPositions(motion::Clip* person) {
-    for (std::size_t i = 0; i < person->poses.all().size(); ++i) {
-      motion::Vec3& position = person->poses.all()[i];
-      for (float* axis : {&position.x, &position.y, &position.z}) {
-        const double value = TakeValue();
-        if (!(std::abs(value) <= motion::kMaxCoordinate)) {
-          const std::size_t joints = person->joint_names.size();
-          return Error(absl::StrCat("frame ", i / joints, " ", person->joint_names[i % joints],
-                                    ": expected a finite position, got ", value));
-        }
-        *axis = static_cast<float>(value);
+absl::Status ReadPositions(absl::string_view source, NpyArray* array, motion::Clip* person) {
+  const std::size_t joints = person->joint_names.size();
+  for (std::size_t i = 0; i < person->poses.all().size(); ++i) {
+    motion::Vec3& position = person->poses.all()[i];
+    for (float* axis : {&position.x, &position.y, &position.z}) {
+      const double value = TakeValue(array);
+      if (!(std::abs(value) <= motion::kMaxCoordinate)) {
+        return Error(source,
+                     absl::StrCat("frame ", i / joints, " ", person->joint_names[i % joints],
+                                  ": expected a finite position, got ", value));
       }
+      *axis = static_cast<float>(value);
     }
-    return absl::OkStatus();
   }
-
-  absl::string_view bytes_;
-  absl::string_view source_;
-  NpyHeader header_;
-};
+  return absl::OkStatus();
+}
 
 // float32 in C order. Requires as many values as the shape says.
 std::string FormatNpyArray(const std::vector<int>& shape, absl::Span<const float> values) {
@@ -197,9 +166,21 @@ std::string FormatNpyArray(const std::vector<int>& shape, absl::Span<const float
 
 absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
                                                 const std::vector<std::string>& joint_names) {
-  absl::StatusOr<NpyHeader> header = ParseNpyHeader(bytes, source);
-  if (!header.ok()) return header.status();
-  return NpyParser(*std::move(header), source).Parse(joint_names);
+  absl::StatusOr<NpyArray> array = ParseHeader(bytes, source);
+  if (!array.ok()) return array.status();
+  const int joints = static_cast<int>(joint_names.size());
+  absl::Status status = CheckShape(*array, joints, source);
+  if (!status.ok()) return status;
+  const std::vector<int>& shape = array->shape;
+  motion::RecordedMotion motion;
+  motion.people.resize(shape.size() == 4 ? static_cast<std::size_t>(shape[0]) : 1);
+  for (motion::Clip& person : motion.people) {
+    person.joint_names = joint_names;
+    person.poses = motion::Poses(shape[shape.size() - 3], joints);
+    status = ReadPositions(source, &*array, &person);
+    if (!status.ok()) return status;
+  }
+  return motion;
 }
 
 std::string FormatNpy(const std::vector<motion::Clip>& people) {
