@@ -63,15 +63,6 @@ TEST(Csv, IgnoresAColumnOfTimes) {
   EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
 }
 
-TEST(Csv, RejectsEveryTruncationExceptInTheLastValue) {
-  const std::string text = "frame,head_x,head_y,head_z\n0,1,2,3\n1,7,8,9";
-  const std::size_t first_frame = text.find("0,1,2,3") + 7;
-  for (std::size_t size = 0; size < text.size(); ++size) {
-    const bool whole = size == first_frame || size == first_frame + 1;
-    EXPECT_EQ(ParseCsv(text.substr(0, size), "a.csv").ok(), whole) << size;
-  }
-}
-
 TEST(Csv, ReadsBackAPairExactly) {
   motion::ClipPair pair{test::MakePerson(), test::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
   pair.leader.frame_rate_hz = pair.follower.frame_rate_hz = 29.97;
