@@ -65,42 +65,38 @@ double MonotoneCubic::At(double time) const {
 constexpr double kLongestMotion = 60;
 constexpr double kDefaultFrameRateHz = 30;
 
-enum TrackIndex {
-  kTorso,
-  kPelvis,
-  kChest,
-  kHead,
-  kLeftFoot,
-  kRightFoot,
-  kLeftHand,
-  kRightHand,
-  kLeftElbow,
-  kRightElbow,
-  kLeftKnee,
-  kRightKnee,
-  kTrackCount
-};
+// The values of a pose that a track sets.
+using Values = std::vector<double*>;
+Values Of(retargeting::Vec3d& v) { return {&v.x, &v.y, &v.z}; }
+Values Of(Lean& lean) { return {&lean.yaw, &lean.pitch, &lean.roll}; }
 
-// A track with the values of a relaxed stand.
-struct TrackDefault {
+struct Track {
   const char* name;
-  std::vector<double> values;
+  Values (*values)(PuppetPose& pose);
 };
-const std::vector<TrackDefault>& TrackDefaults() {
-  static const auto* const kDefaults =
-      new std::vector<TrackDefault>{{"torso", {0, 1.11, 0}},
-                                    {"pelvis", {0, 0, 0}},
-                                    {"chest", {0, 2, 0}},
-                                    {"head", {0, 0, 0}},
-                                    {"left_foot", {0.11, 0.08, 0.02}},
-                                    {"right_foot", {-0.11, 0.08, -0.02}},
-                                    {"left_hand", {0.21, -0.55, 0.05}},
-                                    {"right_hand", {-0.21, -0.55, 0.05}},
-                                    {"left_elbow", {20}},
-                                    {"right_elbow", {20}},
-                                    {"left_knee", {6}},
-                                    {"right_knee", {6}}};
-  return *kDefaults;
+constexpr Track kTracks[] = {
+    {"torso", [](PuppetPose& pose) { return Of(pose.torso); }},
+    {"pelvis", [](PuppetPose& pose) { return Of(pose.pelvis); }},
+    {"chest", [](PuppetPose& pose) { return Of(pose.chest); }},
+    {"head", [](PuppetPose& pose) { return Of(pose.head); }},
+    {"left_foot", [](PuppetPose& pose) { return Of(pose.left_foot.target); }},
+    {"right_foot", [](PuppetPose& pose) { return Of(pose.right_foot.target); }},
+    {"left_hand", [](PuppetPose& pose) { return Of(pose.left_hand.target); }},
+    {"right_hand", [](PuppetPose& pose) { return Of(pose.right_hand.target); }},
+    {"left_elbow", [](PuppetPose& pose) { return Values{&pose.left_hand.swivel}; }},
+    {"right_elbow", [](PuppetPose& pose) { return Values{&pose.right_hand.swivel}; }},
+    {"left_knee", [](PuppetPose& pose) { return Values{&pose.left_foot.swivel}; }},
+    {"right_knee", [](PuppetPose& pose) { return Values{&pose.right_foot.swivel}; }}};
+
+PuppetPose RelaxedStand() {
+  PuppetPose pose;
+  pose.torso = {0, 1.11, 0};
+  pose.chest.pitch = 2;
+  pose.left_foot = {{0.11, 0.08, 0.02}, 6};
+  pose.right_foot = {{-0.11, 0.08, -0.02}, 6};
+  pose.left_hand = {{0.21, -0.55, 0.05}, 20};
+  pose.right_hand = {{-0.21, -0.55, 0.05}, 20};
+  return pose;
 }
 
 // The keys of one track, for each of its values.
@@ -109,7 +105,8 @@ using TrackKeys = std::vector<std::vector<MonotoneCubic::Key>>;
 class KeyframeParser {
  public:
   KeyframeParser(absl::string_view text, absl::string_view source) : lines_(text), source_(source) {
-    for (const TrackDefault& track : TrackDefaults()) keys_.emplace_back(track.values.size());
+    PuppetPose pose;
+    for (const Track& track : kTracks) keys_.emplace_back(track.values(pose).size());
   }
 
   absl::Status Parse() {
@@ -126,19 +123,22 @@ class KeyframeParser {
   }
 
   double frame_rate_hz() const { return frame_rate_hz_; }
-  double duration() const { return time_; }
 
-  // Returns the values of every track over time.
-  std::vector<std::vector<MonotoneCubic>> Curves() const {
-    std::vector<std::vector<MonotoneCubic>> curves(keys_.size());
+  // The pose at each frame.
+  std::vector<PuppetPose> Poses() const {
+    const int frames = 1 + static_cast<int>(std::round(time_ * frame_rate_hz_));
+    std::vector<PuppetPose> poses(static_cast<std::size_t>(frames), RelaxedStand());
     for (std::size_t track = 0; track < keys_.size(); ++track) {
       for (std::size_t i = 0; i < keys_[track].size(); ++i) {
-        const std::vector<MonotoneCubic::Key>& keys = keys_[track][i];
-        const MonotoneCubic::Key rest = {0, TrackDefaults()[track].values[i]};
-        curves[track].emplace_back(keys.empty() ? std::vector<MonotoneCubic::Key>{rest} : keys);
+        if (keys_[track][i].empty()) continue;
+        const MonotoneCubic curve(keys_[track][i]);
+        for (int frame = 0; frame < frames; ++frame) {
+          PuppetPose& pose = poses[static_cast<std::size_t>(frame)];
+          *kTracks[track].values(pose)[i] = curve.At(frame / frame_rate_hz_);
+        }
       }
     }
-    return curves;
+    return poses;
   }
 
  private:
@@ -150,7 +150,7 @@ class KeyframeParser {
     if (words[0] == "frame_rate") return ParseFrameRate(words);
     if (words[0] == "at") return ParseTime(words);
     for (std::size_t track = 0; track < keys_.size(); ++track) {
-      if (words[0] == TrackDefaults()[track].name) return ParseKey(words, track);
+      if (words[0] == kTracks[track].name) return ParseKey(words, track);
     }
     return Error(absl::StrCat("expected frame_rate, at or a track such as torso, got ",
                               base::Quoted(words[0])));
@@ -218,52 +218,16 @@ class KeyframeParser {
   std::vector<TrackKeys> keys_;  // [tracks]
 };
 
-class Animator {
- public:
-  explicit Animator(std::vector<std::vector<MonotoneCubic>> curves) : curves_(std::move(curves)) {}
-
-  PuppetPose At(double time) const {
-    PuppetPose pose;
-    pose.torso = Vector(kTorso, time);
-    pose.pelvis = Angles(kPelvis, time);
-    pose.chest = Angles(kChest, time);
-    pose.head = Angles(kHead, time);
-    pose.left_foot = {Vector(kLeftFoot, time), Value(kLeftKnee, 0, time)};
-    pose.right_foot = {Vector(kRightFoot, time), Value(kRightKnee, 0, time)};
-    pose.left_hand = {Vector(kLeftHand, time), Value(kLeftElbow, 0, time)};
-    pose.right_hand = {Vector(kRightHand, time), Value(kRightElbow, 0, time)};
-    return pose;
-  }
-
- private:
-  double Value(TrackIndex track, std::size_t i, double time) const {
-    return curves_[static_cast<size_t>(track)][i].At(time);
-  }
-  retargeting::Vec3d Vector(TrackIndex track, double time) const {
-    return {Value(track, 0, time), Value(track, 1, time), Value(track, 2, time)};
-  }
-  Lean Angles(TrackIndex track, double time) const {
-    return {Value(track, 0, time), Value(track, 1, time), Value(track, 2, time)};
-  }
-
-  std::vector<std::vector<MonotoneCubic>> curves_;
-};
-
 }  // namespace
 
 absl::StatusOr<motion::Clip> ParseKeyframes(absl::string_view text, absl::string_view source) {
   KeyframeParser parser(text, source);
   absl::Status status = parser.Parse();
   if (!status.ok()) return status;
-  const Animator animator(parser.Curves());
   motion::Clip clip;
   clip.joint_names = motion::SbuSkeleton().joint_names;
   clip.frame_rate_hz = parser.frame_rate_hz();
-  const int frames = 1 + static_cast<int>(std::round(parser.duration() * clip.frame_rate_hz));
-  for (int frame = 0; frame < frames; ++frame) {
-    const std::vector<motion::Vec3> pose = PosePuppet(animator.At(frame / clip.frame_rate_hz));
-    clip.Append(pose);
-  }
+  for (const PuppetPose& pose : parser.Poses()) clip.Append(PosePuppet(pose));
   return clip;
 }
 
