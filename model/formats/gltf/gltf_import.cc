@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,9 +12,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/index.h"
+#include "model/base/median.h"
 #include "model/base/text.h"
 #include "model/formats/gltf/gltf_motion.h"
-#include "model/formats/gltf/gltf_puppet.h"
+#include "model/formats/gltf/gltf_track.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/motion_limits.h"
 
@@ -25,6 +28,189 @@ constexpr std::size_t kMostNames = 20;  // of animations, in messages
 constexpr double kLeastTravel = 0.01;
 
 using base::Index;
+using retargeting::Affine;
+using retargeting::Normalised;
+using retargeting::Vec3d;
+
+// The nodes of a character and their ancestors.
+struct Members {
+  std::vector<int> above;  // from the outermost one to the root's parent
+  std::vector<int> nodes;  // the root and all below it, parents first
+};
+
+// The times of the first and last keys of all tracks, and the rate of keys.
+struct Timing {
+  double start = 0, end = 0;
+  double rate_hz = 0;
+};
+
+// Keys farther apart than this were set by hand and do not indicate a rate.
+constexpr double kSlowestKeysHz = 15, kHandKeyedRateHz = 30, kFastestRateHz = 240;
+constexpr double kRateTolerance = 0.01;
+// Frames, spread over an animation, in which its travel is measured.
+constexpr int kMeasuredFrames = 64;
+
+Affine FromMatrix(const std::array<double, 16>& m) {
+  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+}
+
+double RateOfKeys(const std::vector<float>& times) {
+  if (times.size() < 2) return 0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    steps.push_back(static_cast<double>(times[i]) - static_cast<double>(times[i - 1]));
+  }
+  const double rate = 1 / base::Median(std::move(steps)), whole = std::round(rate);
+  return std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
+}
+
+// The nodes of a character with their tracks.
+class Puppet {
+ public:
+  // `document` must outlive this object.
+  Puppet(const GltfDocument& document, Members members)
+      : document_(&document), members_(std::move(members)) {
+    tracks_.resize(document.nodes.size());
+    world_.resize(document.nodes.size());
+    is_member_.resize(document.nodes.size());
+    moves_.resize(document.nodes.size());
+    for (int node : members_.nodes) is_member_[Index(node)] = moves_[Index(node)] = true;
+    for (int node : members_.above) moves_[Index(node)] = true;
+  }
+
+  const Members& members() const { return members_; }
+
+  bool IsMovedBy(const GltfAnimation& animation) const {
+    return std::any_of(
+        animation.channels.begin(), animation.channels.end(),
+        [this](const GltfChannel& channel) { return is_member_[Index(channel.node)]; });
+  }
+
+  // Replaces the tracks. Errors: those of GltfTrack::Read.
+  absl::Status ReadTracks(const GltfAnimation& animation, GltfBuffers* buffers) {
+    for (std::vector<GltfTrack>& tracks : tracks_) tracks.clear();
+    for (const GltfChannel& channel : animation.channels) {
+      if (!moves_[Index(channel.node)]) continue;
+      absl::StatusOr<GltfTrack> track = GltfTrack::Read(channel, buffers);
+      if (!track.ok()) return track.status();
+      tracks_[Index(channel.node)].push_back(*std::move(track));
+    }
+    return absl::OkStatus();
+  }
+
+  // Hand-keyed animations, whose keys are far apart, have a rate of 30 Hz.
+  Timing FindTiming() const {
+    Timing timing;
+    timing.rate_hz = kHandKeyedRateHz;
+    std::size_t most_keys = 0;
+    bool first = true;
+    for (const std::vector<GltfTrack>& tracks : tracks_) {
+      for (const GltfTrack& track : tracks) {
+        const double start = static_cast<double>(track.times().front());
+        const double end = static_cast<double>(track.times().back());
+        timing.start = first ? start : std::min(timing.start, start);
+        timing.end = first ? end : std::max(timing.end, end);
+        first = false;
+        if (track.times().size() <= most_keys) continue;
+        most_keys = track.times().size();
+        const double rate = RateOfKeys(track.times());
+        timing.rate_hz = rate < kSlowestKeysHz ? kHandKeyedRateHz : std::min(rate, kFastestRateHz);
+      }
+    }
+    return timing;
+  }
+
+  // The rest pose: lengths in the world's unit, each bone in its parent's axes.
+  retargeting::JointTree Tree() {
+    Stand(std::nullopt);
+    retargeting::JointTree tree;
+    std::vector<int> places(document_->nodes.size(), -1);
+    for (int node : members_.nodes) {
+      const GltfNode& written = document_->nodes[Index(node)];
+      const int parent = tree.names.empty() ? -1 : places[Index(written.parent)];
+      const double scale = written.parent < 0 ? 1 : world_[Index(written.parent)].Scale();
+      const Vec3d at = Local(node, std::nullopt).origin;
+      places[Index(node)] = static_cast<int>(tree.names.size());
+      tree.names.push_back(written.name);
+      tree.parents.push_back(parent);
+      tree.offsets.push_back(parent < 0 ? Vec3d{} : at * scale);
+    }
+    return tree;
+  }
+
+  // The places of the members in the world.
+  std::vector<motion::Vec3> PoseAt(double seconds) {
+    Stand(seconds);
+    std::vector<motion::Vec3> pose;
+    pose.reserve(members_.nodes.size());
+    for (int node : members_.nodes) pose.push_back(ToFloat(world_[Index(node)].origin));
+    return pose;
+  }
+
+  // How far the joints move from where they start: the mean of their largest distances, as a
+  // fraction of the character's size.
+  double Travel() {
+    const Timing timing = FindTiming();
+    std::vector<motion::Vec3> first;
+    std::vector<float> farthest(members_.nodes.size());
+    float size = 0;
+    for (int frame = 0; frame < kMeasuredFrames; ++frame) {
+      const double share = static_cast<double>(frame) / (kMeasuredFrames - 1);
+      const std::vector<motion::Vec3> pose =
+          PoseAt(timing.start + (timing.end - timing.start) * share);
+      if (frame == 0) first = pose;
+      for (std::size_t j = 0; j < pose.size(); ++j) {
+        farthest[j] = std::max(farthest[j], Distance(pose[j], first[j]));
+        size = std::max(size, Distance(pose[j], pose[0]));
+      }
+    }
+    double sum = 0;
+    for (float distance : farthest) sum += static_cast<double>(distance);
+    return size > 0 ? sum / static_cast<double>(farthest.size()) / static_cast<double>(size) : 0;
+  }
+
+ private:
+  // The parts of a node's transform that tracks move, and those that they do not.
+  retargeting::Parts PartsAt(int node, double seconds) const {
+    const GltfNode& written = document_->nodes[Index(node)];
+    retargeting::Parts parts{written.translation, Normalised(written.rotation), written.scale};
+    for (const GltfTrack& track : tracks_[Index(node)]) {
+      if (track.channel().path == GltfPath::kRotation) parts.rotation = track.RotationAt(seconds);
+      if (track.channel().path == GltfPath::kTranslation)
+        parts.translation = track.VectorAt(seconds);
+      if (track.channel().path == GltfPath::kScale) parts.scale = track.VectorAt(seconds);
+    }
+    return parts;
+  }
+
+  // The transform in the parent's axes; at rest if `seconds` is absent.
+  Affine Local(int node, std::optional<double> seconds) const {
+    const GltfNode& written = document_->nodes[Index(node)];
+    if (seconds.has_value() && !tracks_[Index(node)].empty()) {
+      return FromParts(PartsAt(node, *seconds));
+    }
+    if (written.matrix.has_value()) return FromMatrix(*written.matrix);
+    return retargeting::FromParts(
+        {written.translation, Normalised(written.rotation), written.scale});
+  }
+
+  void Stand(std::optional<double> seconds) {
+    for (const std::vector<int>* nodes : {&members_.above, &members_.nodes}) {
+      for (int node : *nodes) {
+        const int parent = document_->nodes[Index(node)].parent;
+        const Affine local = Local(node, seconds);
+        world_[Index(node)] = parent < 0 ? local : world_[Index(parent)] * local;
+      }
+    }
+  }
+
+  const GltfDocument* document_;
+  Members members_;
+  std::vector<std::vector<GltfTrack>> tracks_;  // [nodes]
+  std::vector<bool> is_member_;                 // [nodes]
+  std::vector<bool> moves_;                     // [nodes], members and their ancestors
+  std::vector<Affine> world_;                   // [nodes]
+};
 
 class Hierarchy {
  public:

@@ -5,7 +5,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
-#include "model/formats/gltf/gltf_puppet.h"
+#include "model/formats/gltf/gltf_track.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/expect_near.h"
 #include "tests/support/matchers.h"
