@@ -46,7 +46,7 @@ struct ReactionOptions {
   std::optional<motion::Vec3> partner_direction;
   // The true vertical of the leader's world, for motion from a tilted camera: of any length, less
   // than 45 degrees from +y. The server levels the whole request and returns the follower tilted
-  // like the leader. Absent: +y. motion/vertical.h estimates it from the motion.
+  // like the leader. Absent: +y.
   std::optional<motion::Vec3> up;
   // Seed of the random sample that a sampling model draws (ModelInfo::samples). On the same server,
   // the same request with the same seed returns the same motion. Absent: derived from the leader in
