@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "model/network/lstm.h"
-#include "model/network/sequence.h"
+#include "model/network/recurrent.h"
 
 namespace duet::network {
 

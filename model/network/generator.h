@@ -43,17 +43,6 @@ struct GeneratorParameters {
   torch::Tensor base_bias;      // [3 J]; undefined without base pose
 };
 
-// Initialises randomly, with LibTorch's random number generator.
-GeneratorParameters MakeParameters(const checkpoint::Manifest& manifest);
-
-// All tensors by their names in ExpectedTensors: views into the parameters, without gradient.
-std::map<std::string, torch::Tensor> ViewsByName(const GeneratorParameters& parameters,
-                                                 const std::vector<checkpoint::SliceShape>& slices);
-
-// The defined tensors with the names that a module registers them by. The module replaces each by
-// the registered tensor.
-std::vector<std::pair<std::string, torch::Tensor*>> Registered(GeneratorParameters* parameters);
-
 // The generator's input for a batch of clips, in the standard coordinates
 // (model/motion/standardise.h).
 struct GeneratorInput {
@@ -94,9 +83,7 @@ class GeneratorImpl : public torch::nn::Module {
   void SetBasePoses(const torch::Tensor& means);
 
   // All tensors by their names in ExpectedTensors: views without gradient, to read or to fill.
-  std::map<std::string, torch::Tensor> tensors() const {
-    return ViewsByName(parameters_, slice_shapes_);
-  }
+  std::map<std::string, torch::Tensor> tensors() const;
 
  private:
   struct Encoded {

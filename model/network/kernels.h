@@ -1,8 +1,7 @@
 #ifndef DUET_MODEL_NETWORK_KERNELS_H_
 #define DUET_MODEL_NETWORK_KERNELS_H_
 
-// The inner loops of the recurrent layers, free of LibTorch. Every kernel exists for float (used in
-// production) and double (used by gradient checks).
+// The inner loops of the recurrent layers, free of LibTorch.
 
 namespace duet::network {
 
@@ -11,16 +10,12 @@ namespace duet::network {
 //         cell_before, cell, hidden [rows, H].
 void LstmCellForward(int rows, int hidden_size, float* gates, const float* cell_before, float* cell,
                      float* hidden);
-void LstmCellForward(int rows, int hidden_size, double* gates, const double* cell_before,
-                     double* cell, double* hidden);
 
 // Its gradient. d_cell [rows, H] holds dL/dcell in and dL/dcell_before out.
 // Shapes: gates [rows, 4 H] activations; d_hidden [rows, H]; d_gates [rows, 4 H] out
 // (of the pre-activations).
 void LstmCellBackward(int rows, int hidden_size, const float* gates, const float* cell_before,
                       const float* cell, const float* d_hidden, float* d_cell, float* d_gates);
-void LstmCellBackward(int rows, int hidden_size, const double* gates, const double* cell_before,
-                      const double* cell, const double* d_hidden, double* d_cell, double* d_gates);
 
 // Attention weights of one decoder row over the frames of its clip.
 //   tanh_j = tanh(encoded_j + query), weights = softmax_j(score . tanh_j), 0 from `valid` on.
@@ -28,30 +23,20 @@ void LstmCellBackward(int rows, int hidden_size, const double* gates, const doub
 // Shapes: encoded, tanh_out [frames, A]; query, score [A]; weights [frames].
 void AttentionForward(int frames, int valid, int attention, const float* encoded,
                       const float* query, const float* score, float* tanh_out, float* weights);
-void AttentionForward(int frames, int valid, int attention, const double* encoded,
-                      const double* query, const double* score, double* tanh_out, double* weights);
 
 // Its gradient, accumulated into d_encoded, d_score; d_query is overwritten.
 // Shapes: d_weights [frames]; the others as above.
 void AttentionBackward(int valid, int attention, const float* tanh_values, const float* weights,
                        const float* score, const float* d_weights, float* d_encoded, float* d_query,
                        float* d_score);
-void AttentionBackward(int valid, int attention, const double* tanh_values, const double* weights,
-                       const double* score, const double* d_weights, double* d_encoded,
-                       double* d_query, double* d_score);
 
 // c [m, n] = a [m, k] b + beta c, all row-major; b is [k, n], or [n, k] when transposed.
 void Gemm(bool transpose_b, int m, int n, int k, const float* a, const float* b, float beta,
           float* c);
-void Gemm(bool transpose_b, int m, int n, int k, const double* a, const double* b, double beta,
-          double* c);
 
 // y = x^T M (+ y when beta is 1), and y = M x. M is [rows, columns], row-major.
 void VectorMatrix(int rows, int columns, const float* x, const float* matrix, float beta, float* y);
-void VectorMatrix(int rows, int columns, const double* x, const double* matrix, double beta,
-                  double* y);
 void MatrixVector(int rows, int columns, const float* matrix, const float* x, float* y);
-void MatrixVector(int rows, int columns, const double* matrix, const double* x, double* y);
 
 }  // namespace duet::network
 

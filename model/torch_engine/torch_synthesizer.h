@@ -9,11 +9,16 @@
 #include "absl/status/statusor.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/engine/network_synthesizer.h"
-#include "model/engine/synthesizer.h"
 
 namespace duet::torch_engine {
 
-// A synthesizer that runs the generator of a checkpoint with LibTorch on the CPU.
+// Runs the generator of a checkpoint, of any architecture, with LibTorch on the CPU.
+// INVALID_ARGUMENT names a tensor that is missing or has another shape. LibTorch's exceptions
+// become INTERNAL.
+absl::StatusOr<std::unique_ptr<const engine::Network>> MakeTorchNetwork(
+    const checkpoint::Checkpoint& checkpoint);
+
+// A synthesizer of such a network.
 // Threads: Synthesize is safe to call concurrently.
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> MakeTorchSynthesizer(
     const checkpoint::Checkpoint& checkpoint, const engine::PipelineOptions& options = {});

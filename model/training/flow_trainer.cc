@@ -5,7 +5,6 @@
 #include "absl/strings/str_cat.h"
 #include "model/motion/skeleton.h"
 #include "model/network/batch.h"
-#include "model/network/flow_losses.h"
 #include "model/network/flow_noise.h"
 #include "model/network/flow_sampler.h"
 #include "model/network/losses.h"

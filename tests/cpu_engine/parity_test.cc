@@ -8,7 +8,7 @@
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/embedded/embedded.h"
 #include "model/motion/skeleton.h"
-#include "model/torch_engine/torch_network.h"
+#include "model/torch_engine/torch_synthesizer.h"
 #include "tests/cpu_engine/network_inputs.h"
 #include "tests/cpu_engine/random_checkpoint.h"
 #include "tests/support/architectures.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model/network/flow_losses.h"
+#include "model/network/losses.h"
 
 namespace duet::network {
 namespace {

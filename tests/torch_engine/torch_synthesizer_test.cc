@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "model/torch_engine/torch_network.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/tiny_checkpoint.h"

@@ -10,7 +10,7 @@
 #include "model/network/batch.h"
 #include "model/network/generator.h"
 #include "model/network/parameters.h"
-#include "model/network/sequence.h"
+#include "model/network/recurrent.h"
 #include "model/training/sampler.h"
 
 namespace duet::evaluation::judge {
