@@ -1,7 +1,6 @@
 #include "server/batching/window_queue.h"
 
 #include <algorithm>
-#include <chrono>
 #include <string_view>
 #include <utility>
 
@@ -11,11 +10,6 @@ namespace duet::server::batching {
 namespace {
 
 using common::TimePoint;
-
-TimePoint After(TimePoint start, double seconds) {
-  return start +
-         std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(seconds));
-}
 
 int CandidatesOf(const WindowJob& job) {
   return engine::EvaluationCount(job.model->description(), job.window.options.sampling);
@@ -245,7 +239,7 @@ void WindowQueue::Start(Batch& batch, TimePoint now) {
   const bool is_heavy =
       std::any_of(batch.windows.begin(), batch.windows.end(),
                   [](const QueuedWindow& window) { return window.Turns() > kLightTurns; });
-  running_[batch.number] = {After(now, batch.expected_seconds), is_heavy};
+  running_[batch.number] = {now + common::Seconds(batch.expected_seconds), is_heavy};
   served_by_now_ = std::max(served_by_now_, account.served_seconds);
   account.served_seconds += batch.expected_seconds;
 }

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "server/common/clock.h"
+
 namespace duet::server::common {
 namespace {
 
@@ -77,12 +79,10 @@ RepeatedTask::~RepeatedTask() {
 }
 
 void RepeatedTask::Run(double pause_seconds, const std::function<void()>& task) {
-  const auto pause = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-      std::chrono::duration<double>(pause_seconds));
   while (true) {
     {
       MutexLock lock(mutex_);
-      const auto end = std::chrono::steady_clock::now() + pause;
+      const auto end = std::chrono::steady_clock::now() + Seconds(pause_seconds);
       while (!stopping_ && changed_.WaitUntil(mutex_, end)) {
       }
       if (stopping_) return;

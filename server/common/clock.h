@@ -27,6 +27,10 @@ inline const Clock& Clock::Real() {
   return clock;
 }
 
+inline TimePoint::duration Seconds(double seconds) {
+  return std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(seconds));
+}
+
 inline double SecondsBetween(TimePoint from, TimePoint to) {
   return std::chrono::duration<double>(to - from).count();
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <thread>
 #include <utility>
@@ -77,14 +78,15 @@ CgroupFolders FindCgroups(const fs::path& system_root, const std::string& contro
   return {WithAncestors(top / controller, version_1), WithAncestors(top, version_2)};
 }
 
-std::optional<double> LimitOfVersion2(const fs::path& cgroup) {
-  return ParseCpuMax(FirstLine(cgroup / "cpu.max"));
-}
-
-// A quota of -1 means no limit.
-std::optional<double> LimitOfVersion1(const fs::path& cgroup) {
-  return ParseCpuMax(FirstLine(cgroup / "cpu.cfs_quota_us") + " " +
-                     FirstLine(cgroup / "cpu.cfs_period_us"));
+// Returns the cores that a cgroup's cpu.max ("<quota> <period>" in microseconds, or "max <period>")
+// grants, or nullopt if it sets no limit or is malformed.
+std::optional<double> ParseCpuMax(const std::string& text) {
+  std::istringstream fields(text);
+  double quota = 0;
+  double period = 0;
+  // "max" does not parse as a number.
+  if (!(fields >> quota >> period) || !(quota > 0) || !(period > 0)) return std::nullopt;
+  return quota / period;
 }
 
 // The processors that `taskset` and a cpuset allow this thread.
@@ -114,23 +116,17 @@ std::uint64_t MemoryOfMachine(const fs::path& system_root) {
 
 }  // namespace
 
-std::optional<double> ParseCpuMax(const std::string& text) {
-  std::istringstream fields(text);
-  double quota = 0;
-  double period = 0;
-  // "max" does not parse as a number.
-  if (!(fields >> quota >> period) || !(quota > 0) || !(period > 0)) return std::nullopt;
-  return quota / period;
-}
-
 int AvailableCores(const fs::path& system_root) {
   double cores = AffinityCores();
   const CgroupFolders cgroups = FindCgroups(system_root, "cpu");
   for (const fs::path& cgroup : cgroups.version_2) {
-    cores = std::min(cores, LimitOfVersion2(cgroup).value_or(cores));
+    cores = std::min(cores, ParseCpuMax(FirstLine(cgroup / "cpu.max")).value_or(cores));
   }
   for (const fs::path& cgroup : cgroups.version_1) {
-    cores = std::min(cores, LimitOfVersion1(cgroup).value_or(cores));
+    // A quota of -1 means no limit.
+    const std::string limit =
+        FirstLine(cgroup / "cpu.cfs_quota_us") + " " + FirstLine(cgroup / "cpu.cfs_period_us");
+    cores = std::min(cores, ParseCpuMax(limit).value_or(cores));
   }
   return std::max(1, static_cast<int>(std::floor(cores)));
 }

@@ -4,17 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "duet/v1/server_config.pb.h"
 
 namespace duet::server::config {
-
-// Returns the cores that a cgroup's cpu.max ("<quota> <period>" in microseconds, or "max <period>")
-// grants, or nullopt if it sets no limit or is malformed.
-std::optional<double> ParseCpuMax(const std::string& text);
 
 // Returns the cores that this process may keep busy, at least 1: the tightest of its cgroups'
 // limits (version 1 and 2) and of the processors that the calling thread may run on. More threads

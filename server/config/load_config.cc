@@ -3,7 +3,6 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -233,8 +232,6 @@ Environment ReadEnvironment(const char* const* variables) {
   }
   return environment;
 }
-
-Environment ProcessEnvironment() { return ReadEnvironment(environ); }
 
 CommandLine ParseCommandLine(int argc, const char* const* argv, const Environment& environment) {
   CommandLine command_line;

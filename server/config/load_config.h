@@ -28,11 +28,9 @@ absl::Status ReadConfigFile(const std::filesystem::path& path, v1::ServerConfig*
 // Environment variables by name.
 using Environment = std::map<std::string, std::string>;
 
-// Returns the variables of this process that begin with "DUET_SERVER_", except those that
-// Kubernetes sets in every container beside a Service named duet-server: DUET_SERVER_SERVICE_HOST,
-// DUET_SERVER_PORT_50051_TCP and the like.
-Environment ProcessEnvironment();
-// Does the same for a null-terminated array of "NAME=value".
+// Returns the variables, of a null-terminated array of "NAME=value" such as environ, that begin
+// with "DUET_SERVER_", except those that Kubernetes sets in every container beside a Service named
+// duet-server: DUET_SERVER_SERVICE_HOST, DUET_SERVER_PORT_50051_TCP and the like.
 Environment ReadEnvironment(const char* const* variables);
 
 // What the program is started for.

@@ -28,6 +28,15 @@ absl::Status Unexpected(absl::string_view expected, absl::string_view got) {
       absl::StrCat("expected ", expected, ", got ", base::Quoted(got)));
 }
 
+// "a, b or c", for messages.
+std::string OneOf(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    absl::StrAppend(&text, i == 0 ? "" : i + 1 < names.size() ? ", " : " or ", names[i]);
+  }
+  return text;
+}
+
 absl::Status AddVersionLabel(const std::string& text, v1::ServerConfig* config) {
   const std::vector<std::string> model = absl::StrSplit(text, absl::MaxSplits(':', 1));
   const std::vector<std::string> label = absl::StrSplit(model.back(), absl::MaxSplits('=', 1));
@@ -70,14 +79,6 @@ std::vector<Choice> ChoicesOf(const google::protobuf::EnumDescriptor& type) {
                        value.number()});
   }
   return choices;
-}
-
-std::string OneOf(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    absl::StrAppend(&text, i == 0 ? "" : i + 1 < names.size() ? ", " : " or ", names[i]);
-  }
-  return text;
 }
 
 std::string Setting::flag() const {

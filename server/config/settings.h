@@ -30,9 +30,6 @@ struct Choice {
 // The values of an enum that may be set: all but the one of number 0.
 std::vector<Choice> ChoicesOf(const google::protobuf::EnumDescriptor& type);
 
-// "a, b or c", for messages.
-std::string OneOf(const std::vector<std::string>& names);
-
 // A field of duet.v1.ServerConfig, described by its option (duet/v1/options.proto). Cheap to copy.
 class Setting {
  public:

@@ -50,11 +50,10 @@ service::RequestLimits Limits(const v1::ServerConfig& settings) {
 }
 
 batching::BatcherOptions Batching(const v1::ServerConfig& settings) {
-  const std::chrono::duration<double> delay(settings.max_batch_delay_seconds());
   return {static_cast<int>(settings.workers()),
           static_cast<int>(settings.max_queued_windows()),
           {static_cast<int>(settings.max_batch_windows()),
-           std::chrono::duration_cast<std::chrono::nanoseconds>(delay)},
+           common::Seconds(settings.max_batch_delay_seconds())},
           settings.client_share()};
 }
 
@@ -279,19 +278,22 @@ void DuetServer::Watch(std::function<absl::Status()> self_check) {
   if (check.check == nullptr) {
     check.check = [this] { return CheckItself(); };
   }
-  check.failed = [this](const absl::Status& status) {
-    metrics_.SelfCheckFailed();
-    log_.Error("self_check_failed", {{"message", std::string(status.message())}});
-  };
-  check.changed = [this](bool passes) { SetReachable(passes); };
+  const double limit = settings_.self_check_seconds() + settings_.watchdog_seconds();
   if (settings_.watchdog_seconds() > 0) {
     stuck_ = std::make_unique<LastResort>(
         "stuck", "no self-check succeeded for watchdog_seconds; the process ends to be restarted",
         kExitStuck);
-    const double limit = settings_.self_check_seconds() + settings_.watchdog_seconds();
     stuck_->Set(limit);
-    check.passed = [this, limit] { stuck_->Set(limit); };
   }
+  check.checked = [this, limit](const absl::Status& status, bool changed) {
+    if (!status.ok()) {
+      metrics_.SelfCheckFailed();
+      log_.Error("self_check_failed", {{"message", std::string(status.message())}});
+    } else if (stuck_ != nullptr) {
+      stuck_->Set(limit);
+    }
+    if (changed) SetReachable(status.ok());
+  };
   self_check_ = std::make_unique<SelfCheck>(std::move(check));
 }
 

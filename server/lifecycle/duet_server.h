@@ -86,10 +86,6 @@ class DuetServer {
   // false, as after a second signal, both periods end.
   void Drain(const std::function<bool(double seconds)>& wait);
 
-  // Reads certificates and the access file again and applies changes at once. The server does so
-  // every second for files that have stopped changing. Safe to call concurrently.
-  void RefreshSecrets() { Tell(secrets_->Refresh()); }
-
   int port() const { return grpc_.port; }
   int metrics_port() const { return endpoint_ == nullptr ? 0 : endpoint_->port(); }
   metrics::JsonLog& log() { return log_; }
@@ -105,7 +101,8 @@ class DuetServer {
   // self-check.
   void Watch(std::function<absl::Status()> self_check);
   void Tell(const std::vector<security::Reload>& reloads);
-  // Does the same as RefreshSecrets. Fails while the files on disk are invalid, even if unchanged.
+  // Reads certificates and the access file again and applies changes at once; Watch does so for
+  // files that have stopped changing. Fails while the files on disk are invalid, even if unchanged.
   absl::Status ReloadSecrets();
   // Null: plain text.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;

@@ -193,15 +193,9 @@ SelfCheck::SelfCheck(SelfCheckOptions options)
 
 void SelfCheck::Check() {
   const absl::Status status = options_.check();
-  const bool passed = passes();
-  if (status.ok()) {
-    failures_ = 0;
-    options_.passed();
-  } else {
-    ++failures_;
-    options_.failed(status);
-  }
-  if (passed != passes()) options_.changed(passes());
+  const bool changed = status.ok() != passes();
+  failures_ = status.ok() ? 0 : failures_ + 1;
+  options_.checked(status, changed);
 }
 
 absl::Status CheckHealth(const v1::ServerConfig& settings, double timeout_seconds) {

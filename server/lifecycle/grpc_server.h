@@ -63,11 +63,10 @@ absl::Status CheckListener(const std::string& host, int port, double timeout_sec
 
 struct SelfCheckOptions {
   double interval_seconds = 10;
-  std::function<absl::Status()> check;              // such as CheckListener
-  std::function<void()> passed = [] {};             // called at each success
-  std::function<void(const absl::Status&)> failed;  // called at each failure
-  // Called when the result of a check differs from the previous one.
-  std::function<void(bool passes)> changed;
+  std::function<absl::Status()> check;  // such as CheckListener
+  // Called with each result. `changed`: the previous check had another result; the first one counts
+  // as a change if it fails.
+  std::function<void(const absl::Status& status, bool changed)> checked;
 };
 
 // Runs a check periodically on a thread of its own.

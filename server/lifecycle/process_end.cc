@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cmath>
 #include <thread>
-#include <utility>
 
 namespace duet::server::lifecycle {
 
@@ -153,10 +152,6 @@ void LimitFreeMemory() {
   mallopt(M_TRIM_THRESHOLD, kKeptBytes);
   mallopt(M_ARENA_MAX, 2 * static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
 }
-
-HeapTrimmer::HeapTrimmer() : HeapTrimmer([] { malloc_trim(0); }) {}
-
-HeapTrimmer::HeapTrimmer(std::function<void()> trim) : trim_(std::move(trim)) {}
 
 void HeapTrimmer::Look(std::uint64_t received_bytes, std::size_t held_bytes) {
   const bool came = received_bytes != received_bytes_;

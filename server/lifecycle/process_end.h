@@ -1,12 +1,15 @@
 #ifndef DUET_SERVER_LIFECYCLE_PROCESS_END_H_
 #define DUET_SERVER_LIFECYCLE_PROCESS_END_H_
 
+#include <malloc.h>
+
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace duet::server::lifecycle {
 
@@ -94,9 +97,9 @@ void LimitFreeMemory();
 // Threads: not safe to call concurrently.
 class HeapTrimmer {
  public:
-  HeapTrimmer();
   // `trim` replaces malloc_trim, for tests.
-  explicit HeapTrimmer(std::function<void()> trim);
+  explicit HeapTrimmer(std::function<void()> trim = [] { malloc_trim(0); })
+      : trim_(std::move(trim)) {}
 
   // Call it about once a second with the bytes of all large requests so far and the bytes that
   // calls hold now. Trims if large requests arrived or finished, and once more at the next call,

@@ -237,18 +237,6 @@ using ReadSettings = std::function<absl::StatusOr<v1::ServerConfig>()>;
 // Less than the image's HEALTHCHECK waits.
 constexpr double kHealthSeconds = 4;
 
-// The number of served models, for the status line of systemd.
-std::string ServedText(DuetServer& server) {
-  const std::vector<registry::ModelStatus> models = server.control().List();
-  const auto served = std::count_if(models.begin(), models.end(), [](const auto& model) {
-    return model.state == registry::ModelState::kServed;
-  });
-  const auto outdated =
-      std::count_if(models.begin(), models.end(), [](const auto& model) { return model.outdated; });
-  return absl::StrCat("serving ", served, " models",
-                      outdated == 0 ? "" : absl::StrCat(", ", outdated, " of them outdated"));
-}
-
 // Listens, loads and begins to serve. Fails with CANCELLED if a signal to stop arrives before that.
 absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig& values,
                                                          const ModelSource& source,
@@ -262,7 +250,11 @@ absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig&
 }
 
 void NotifyReady(DuetServer& server) {
-  NotifySystemd(absl::StrCat("READY=1\nSTATUS=", ServedText(server)));
+  const std::vector<registry::ModelStatus> models = server.control().List();
+  const auto served = std::count_if(models.begin(), models.end(), [](const auto& model) {
+    return model.state == registry::ModelState::kServed;
+  });
+  NotifySystemd(absl::StrCat("READY=1\nSTATUS=serving ", served, " models"));
 }
 
 // Serves until a signal to stop, and reloads at a signal to reload.
@@ -335,7 +327,7 @@ int ReportHealth(const v1::ServerConfig& values) {
 int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
               std::shared_ptr<metrics::LogSink> sink) {
   const auto read = [argc, argv] {
-    return config::ParseCommandLine(argc, argv, config::ProcessEnvironment());
+    return config::ParseCommandLine(argc, argv, config::ReadEnvironment(environ));
   };
   const config::CommandLine command_line = read();
   if (command_line.print.has_value()) {

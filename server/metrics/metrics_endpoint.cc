@@ -22,6 +22,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
+#include "server/common/clock.h"
 #include "server/common/listen_address.h"
 
 namespace duet::server::metrics {
@@ -217,10 +218,8 @@ class PollingEndpoint final : public MetricsEndpoint {
       return;
     }
     if (connections_.size() >= options_.max_connections) connections_.pop_front();
-    connections_.emplace_back(
-        std::move(socket),
-        steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
-                                  std::chrono::duration<double>(options_.connection_seconds)));
+    connections_.emplace_back(std::move(socket),
+                              steady_clock::now() + common::Seconds(options_.connection_seconds));
   }
 
   const MetricsEndpointOptions options_;

@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <cstddef>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -45,17 +45,15 @@ std::vector<std::string> StatFields() {
   return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
 }
 
-// The boot time in seconds since 1970.
-std::optional<double> BootTime() {
-  std::ifstream file("/proc/stat");
-  std::string line;
-  while (std::getline(file, line)) {
-    std::istringstream words(line);
-    std::string name;
-    double seconds = 0;
-    if (words >> name >> seconds && name == "btime") return seconds;
-  }
-  return std::nullopt;
+// The boot time in seconds since 1970. Measured once, so that it is the same in every scrape.
+double BootTime() {
+  static const double boot_time = [] {
+    timespec now = {}, uptime = {};
+    clock_gettime(CLOCK_REALTIME, &now);
+    clock_gettime(CLOCK_BOOTTIME, &uptime);
+    return static_cast<double>(now.tv_sec - uptime.tv_sec);
+  }();
+  return boot_time;
 }
 
 void AddStat(Families& families) {
@@ -74,11 +72,9 @@ void AddStat(Families& families) {
                            field(kVirtualMemory)));
   families.push_back(Gauge("process_resident_memory_bytes", "Resident memory size in bytes.",
                            field(kResidentPages) * static_cast<double>(sysconf(_SC_PAGESIZE))));
-  if (const auto boot = BootTime()) {
-    families.push_back(Gauge("process_start_time_seconds",
-                             "Start time of the process since unix epoch in seconds.",
-                             *boot + field(kStart) / ticks));
-  }
+  families.push_back(Gauge("process_start_time_seconds",
+                           "Start time of the process since unix epoch in seconds.",
+                           BootTime() + field(kStart) / ticks));
 }
 
 void AddDescriptors(Families& families) {

@@ -60,7 +60,7 @@ std::filesystem::path ResolveCheckpoint(const std::filesystem::path& folder);
 // reads, do not count. Empty if there are no files.
 std::string FilesOf(const std::filesystem::path& folder);
 
-// Loads one checkpoint folder and checks its results (golden_check.h). Rejects a checkpoint if name
+// Loads one checkpoint folder and checks its results (CheckAnswers). Rejects a checkpoint if name
 // or version in its manifest differ from those of its folder.
 LoadReport LoadCheckpoint(const std::filesystem::path& folder, const ModelLoader& loader);
 

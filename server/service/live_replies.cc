@@ -1,7 +1,6 @@
 #include "server/service/live_replies.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -20,11 +19,6 @@ constexpr double kMaxUnansweredSeconds = 2;
 constexpr std::size_t kMaxWaitingNotices = 16;
 // A session that gets no answer for so long is not live, and the caller can try another server.
 constexpr double kMaxFirstWaitSeconds = 10;
-
-common::TimePoint::duration Seconds(double seconds) {
-  return std::chrono::duration_cast<common::TimePoint::duration>(
-      std::chrono::duration<double>(seconds));
-}
 
 int HistoryFrames(const engine::ModelDescription& model, const ValidatedLiveStart& start) {
   const double rate = start.live.frame_rate_hz;
@@ -343,7 +337,7 @@ batching::WindowJob LiveReplies::NextJob() {
   job.window = live_.NextWindow();
   job.priority = batching::Priority::kInteractive;
   job.deadline = WindowDeadline();
-  job.due = arrival_ + Seconds(1 / frame_rate_hz_);
+  job.due = arrival_ + common::Seconds(1 / frame_rate_hz_);
   job.cancelled = cancelled_;
   job.continues_call = true;  // also the first: the session was admitted
   job.client = parts_.client;
@@ -356,7 +350,7 @@ batching::WindowJob LiveReplies::NextJob() {
 
 common::TimePoint LiveReplies::WindowDeadline() const {
   if (stats_.windows > 0) return parts_.deadline;
-  return std::min(parts_.deadline, parts_.clock->Now() + Seconds(kMaxFirstWaitSeconds));
+  return std::min(parts_.deadline, parts_.clock->Now() + common::Seconds(kMaxFirstWaitSeconds));
 }
 
 void LiveReplies::Schedule(batching::WindowJob job) {

@@ -1,7 +1,6 @@
 #include "server/service/motion_synthesis_service.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 #include <variant>
 
@@ -89,8 +88,7 @@ common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const commo
   // More than ten days counts as no deadline, because the addition below may overflow.
   constexpr double kNever = 10 * 24 * 3600;
   if (seconds > kNever) return common::TimePoint::max();
-  return clock.Now() + std::chrono::duration_cast<common::TimePoint::duration>(
-                           std::chrono::duration<double>(seconds));
+  return clock.Now() + common::Seconds(seconds);
 }
 
 }  // namespace

@@ -23,6 +23,10 @@ absl::Status Retryable(absl::Status status, absl::string_view reason,
   return common::WithInfo(std::move(status), reason, metadata);
 }
 
+absl::Status Expired(absl::string_view what, double seconds, absl::string_view reason) {
+  return common::WithInfo(absl::DeadlineExceededError(absl::StrCat(what, seconds)), reason);
+}
+
 }  // namespace
 
 void Violations::Malformed(absl::string_view field, absl::string_view expected,
@@ -111,22 +115,18 @@ absl::Status TooManySlowRequestsRefusal(std::size_t limit) {
 }
 
 absl::Status ReceiveTimeoutRefusal(double seconds) {
-  return common::WithInfo(
-      absl::DeadlineExceededError(
-          absl::StrCat("the request did not arrive within receive_timeout_seconds = ", seconds)),
-      common::kReasonReceiveTimeout);
+  return Expired("the request did not arrive within receive_timeout_seconds = ", seconds,
+                 common::kReasonReceiveTimeout);
 }
 
 absl::Status LiveIdleRefusal(double seconds) {
-  return common::WithInfo(absl::DeadlineExceededError(absl::StrCat(
-                              "the live session got no message for live_idle_seconds = ", seconds)),
-                          common::kReasonReceiveTimeout);
+  return Expired("the live session got no message for live_idle_seconds = ", seconds,
+                 common::kReasonReceiveTimeout);
 }
 
 absl::Status WriteTimeoutRefusal(double seconds) {
-  return common::WithInfo(absl::DeadlineExceededError(absl::StrCat(
-                              "the caller read no reply for write_timeout_seconds = ", seconds)),
-                          common::kReasonWriteTimeout);
+  return Expired("the caller read no reply for write_timeout_seconds = ", seconds,
+                 common::kReasonWriteTimeout);
 }
 
 absl::Status NoMessageRefusal() {

@@ -239,18 +239,6 @@ TEST_F(ModelLifecycleTest, AServerThatStopsWhileAModelLoadsGivesUpTheRest) {
   EXPECT_THAT(ListModels(), ElementsAre("fake/3 SERVED", "fake/1 SERVED"));
 }
 
-TEST_F(ModelLifecycleTest, AServerThatIsDestroyedWhileAModelLoadsWaitsForThatOne) {
-  ASSERT_THAT(server().Serve(), IsOk());
-  Write("fake/2", "gated");
-  std::promise<absl::Status> done;
-  server().control().Load("fake", 2, [&](const absl::Status& status) { done.set_value(status); });
-  gate_.WaitUntilReached();
-  std::thread opener([this] { gate_.Open(); });
-  server_.reset();
-  opener.join();
-  EXPECT_THAT(done.get_future().get(), IsOk());
-}
-
 TEST_F(ModelLifecycleTest, HealthTellsOfEachModel) {
   ASSERT_THAT(server().Serve(), IsOk());
   constexpr char kOther[] = "duet.v1.MotionSynthesis/other";

@@ -32,14 +32,6 @@ inline v1::ServerConfig TestOptions() {
   return options;
 }
 
-inline void AddLabel(const std::string& model, const std::string& label, uint32_t version,
-                     v1::ServerConfig* options) {
-  v1::VersionLabel& added = *options->add_version_labels();
-  added.set_model(model);
-  added.set_label(label);
-  added.set_version(version);
-}
-
 // Keeps what is logged.
 //
 // Threads: safe to call concurrently.

@@ -61,41 +61,11 @@ TEST(LoadingTest, ServesOnceItsModelsAreThere) {
   EXPECT_EQ(serving[0]["metrics_port"], server->metrics_port());
 }
 
-TEST(LoadingTest, ABadCheckpointIsReportedAndDoesNotStopOthers) {
-  Running server;
-  server->Add({"broken/1", absl::DataLossError("weights end early"), 0.1});
-  server.Load();
-  ASSERT_THAT(server->Serve(), IsOk());
-  const std::vector<json> refused = server.log.Events("model_refused");
-  ASSERT_EQ(refused.size(), 1u);
-  EXPECT_EQ(refused[0]["source"], "broken/1");
-  EXPECT_EQ(refused[0]["severity"], "ERROR");
-  EXPECT_THAT(refused[0]["message"].get<std::string>(), HasSubstr("weights end early"));
-  const std::string metrics = HttpGet(server->metrics_port(), "/metrics");
-  EXPECT_THAT(metrics, HasSubstr(R"(duet_model_state{checkpoint="broken/1"} 0)"));
-  EXPECT_THAT(metrics, HasSubstr(R"(duet_model_state{checkpoint="fake/1"} 1)"));
-}
-
 TEST(LoadingTest, RefusesToServeNothing) {
   Running server;
   EXPECT_THAT(server->Serve(),
               StatusIs(StatusCode::kFailedPrecondition, HasSubstr("no model could be loaded")));
   EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
-}
-
-TEST(LoadingTest, SetsVersionLabelsAndReportsThoseThatPointNowhere) {
-  v1::ServerConfig options = TestOptions();
-  AddLabel("fake", "stable", 1, &options);
-  AddLabel("fake", "canary", 2, &options);
-  Running server(options);
-  server.Load();
-  ASSERT_THAT(server->Serve(), IsOk());
-  v1::SynthesizeRequest request = SampleRequest();
-  request.mutable_model()->set_version_label("stable");
-  EXPECT_TRUE(Call(*server.stub, request).status.ok());
-  const std::vector<json> refused = server.log.Events("version_label_refused");
-  ASSERT_EQ(refused.size(), 1u);
-  EXPECT_THAT(refused[0]["message"].get<std::string>(), HasSubstr("canary"));
 }
 
 // What a server says of itself while its self-check fails, and when it succeeds again.
@@ -181,21 +151,17 @@ TEST(ListenTest, ASecondServerOnAPortFailsAndSaysWhere) {
 const std::string kListServices = std::string("\x3a\x00", 2);
 constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
 
-TEST(ReflectionTest, NamesTheServices) {
-  Running server;
-  RawCall call(server.channel, kReflection, kListServices);
-  const std::string response = call.Read().value_or("");
-  EXPECT_THAT(response, HasSubstr("duet.v1.MotionSynthesis"));
-  EXPECT_THAT(response, HasSubstr("grpc.health.v1.Health"));
-}
-
-TEST(ReflectionTest, MayBeOff) {
+TEST(ReflectionTest, NamesTheServicesUnlessItIsOff) {
   v1::ServerConfig options = TestOptions();
-  options.set_reflection(false);
   Running server(options);
   RawCall call(server.channel, kReflection, kListServices);
-  EXPECT_FALSE(call.Read().has_value());
-  EXPECT_EQ(call.Finish().error_code(), grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_THAT(call.Read().value_or(""),
+              AllOf(HasSubstr("duet.v1.MotionSynthesis"), HasSubstr("grpc.health.v1.Health")));
+  options.set_reflection(false);
+  Running without(options);
+  RawCall refused(without.channel, kReflection, kListServices);
+  EXPECT_FALSE(refused.Read().has_value());
+  EXPECT_EQ(refused.Finish().error_code(), grpc::StatusCode::UNIMPLEMENTED);
 }
 
 TEST(ReportTest, ACallIsInMetricsAndLogWhenItsCallerKnows) {

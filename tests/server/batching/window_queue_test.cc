@@ -60,17 +60,6 @@ Served Serve(WindowQueue& queue, common::TimePoint now, milliseconds takes) {
   return {turn.batch.windows.size(), job.priority, job.model};
 }
 
-TEST(WindowQueueTest, ReturnsEachWindowOnce) {
-  const Model model = NewModel();
-  WindowQueue queue(Options(1, 2));
-  for (int i = 0; i < 3; ++i) queue.Push(Job(model), kNow);
-  EXPECT_EQ(queue.size(), 3u);
-  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 2u);
-  EXPECT_EQ(queue.size(), 1u);
-  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
-  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 0u);
-}
-
 TEST(WindowQueueTest, RejectsNewCallsWhenFull) {
   const Model model = NewModel();
   WindowQueue queue({1, 2, {1}});

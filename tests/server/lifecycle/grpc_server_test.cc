@@ -115,14 +115,15 @@ TEST(SelfCheckTest, UnhealthyAfterThreeFailuresUntilASuccess) {
   SelfCheckOptions options;
   options.interval_seconds = 0.001;
   options.check = [&] { return well ? absl::OkStatus() : absl::UnavailableError("no answer"); };
-  options.failed = [&](const absl::Status& status) {
+  std::atomic<int> turns{0};
+  options.checked = [&](const absl::Status& status, bool changed) {
+    if (changed) {
+      EXPECT_EQ(status.ok(), turns % 2 == 1) << "it reports each turn once";
+      ++turns;
+    }
+    if (status.ok()) return;
     EXPECT_THAT(status, StatusIs(StatusCode::kUnavailable, "no answer"));
     ++failures;
-  };
-  std::atomic<int> turns{0};
-  options.changed = [&](bool passes) {
-    EXPECT_EQ(passes, turns % 2 == 1) << "it tells each turn once";
-    ++turns;
   };
   const SelfCheck check(options);
   while (failures < 3) std::this_thread::yield();

@@ -168,18 +168,6 @@ TEST_F(ModelManagerTest, TruncatedWeightsMakeAServedVersionOutdatedUntilTheyAreF
   EXPECT_THAT(events_.Take(), ElementsAre("refused a/1, served on", "loaded a/1"));
 }
 
-TEST_F(ModelManagerTest, RemovedOutdatedVersionIsUnloadedAndNotFailed) {
-  Write("a", 1);
-  Write("a", 2);
-  Reload();
-  WriteWeights("a/1", "torn");
-  Reload();
-  EXPECT_THAT(manager_.Unload("a", 1), IsOk());
-  EXPECT_EQ(StatusOf("a", 1).state, ModelState::kUnloaded);
-  EXPECT_EQ(StatusOf("a", 1).error, "");
-  EXPECT_FALSE(StatusOf("a", 1).outdated);
-}
-
 // Files that change while they are read: nobody knows which content was loaded.
 TEST_F(ModelManagerTest, FilesThatChangeDuringALoadAreLoadedAgain) {
   Write("a", 1);
@@ -244,15 +232,6 @@ TEST_F(ModelManagerTest, TheDefaultModelAndLabelledVersionsStayServedWithoutThei
   EXPECT_THAT(Reload().problems, ElementsAre(AllOf(HasSubstr("a/1 stays"), HasSubstr("last")),
                                              AllOf(HasSubstr("b/1 stays"), HasSubstr("stable"))));
   EXPECT_EQ(Served(), "a/1 b/1 c/1");
-}
-
-TEST_F(ModelManagerTest, StopsBeforeTheNextCheckpoint) {
-  Write("a", 1);
-  Write("a", 2);
-  int asked = 0;
-  EXPECT_THAT(manager_.Reload([&] { return ++asked > 1; }),
-              StatusIs(absl::StatusCode::kCancelled, HasSubstr("stop")));
-  EXPECT_EQ(Served(), "a/2");
 }
 
 TEST_F(ModelManagerTest, MovesALabelBeforeItUnloadsWhatThatLeaves) {

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
 
@@ -105,16 +107,13 @@ TEST(ModelRegistryTest, ListsByNameNewestFirst) {
   registry.Serve(Model("a", 2));
   ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
   ASSERT_THAT(registry.SetLabel("a", "old", 1), IsOk());
-  const std::vector<ServedModel> models = registry.List();
-  ASSERT_EQ(models.size(), 3u);
-  EXPECT_EQ(models[0].model->description().version, 2);
-  EXPECT_TRUE(models[0].is_default);
-  EXPECT_THAT(models[0].version_labels, IsEmpty());
-  EXPECT_EQ(models[1].model->description().version, 1);
-  EXPECT_FALSE(models[1].is_default);
-  EXPECT_THAT(models[1].version_labels, ElementsAre("old", "stable"));
-  EXPECT_EQ(models[2].model->description().name, "b");
-  EXPECT_FALSE(models[2].is_default) << "the newest version, but of another model";
+  std::vector<std::string> models;
+  for (const ServedModel& served : registry.List()) {
+    const engine::ModelDescription& model = served.model->description();
+    models.push_back(absl::StrCat(model.name, "/", model.version, served.is_default ? "*" : "", " ",
+                                  absl::StrJoin(served.version_labels, "+")));
+  }
+  EXPECT_THAT(models, ElementsAre("a/2* ", "a/1 old+stable", "b/1 "));
 }
 
 }  // namespace

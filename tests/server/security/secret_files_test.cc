@@ -260,24 +260,6 @@ TEST_F(SecretFilesTest, WaitsUntilAListHasSettled) {
   EXPECT_THAT(files_->Look(), IsEmpty());
 }
 
-TEST_F(SecretFilesTest, AppliesAListBehindAMovedLink) {
-  // As Kubernetes mounts a secret: file -> ..data/file, ..data -> a dated folder.
-  for (const char* day : {"monday", "tuesday"}) {
-    fs::create_directory(folder_ / day);
-    WriteTestFile(folder_ / day / "access", Line(day));
-  }
-  fs::create_directory_symlink("monday", folder_ / "..data");
-  fs::create_symlink("..data/access", folder_ / "access");
-  options_.access = folder_ / "access";
-  ASSERT_THAT(Open(), IsOk());
-  EXPECT_TRUE(Knows("monday"));
-  fs::create_directory_symlink("tuesday", folder_ / "..next");
-  fs::rename(folder_ / "..next", folder_ / "..data");
-  EXPECT_EQ(files_->Refresh().size(), 1u);
-  EXPECT_TRUE(Knows("tuesday"));
-  EXPECT_FALSE(Knows("monday"));
-}
-
 TEST_F(SecretFilesTest, ReportsAnInvalidListOnceAndKeepsTheOldOne) {
   UseAccess(Line("a"));
   ASSERT_THAT(Open(), IsOk());

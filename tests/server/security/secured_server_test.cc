@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <string>
 #include <thread>
@@ -150,21 +151,6 @@ TEST_F(SecuredServerTest, EveryMethodNeedsATokenAndHealthNone) {
   EXPECT_EQ(Health(PlainText(), ""), "SERVING");
 }
 
-TEST_F(SecuredServerTest, ACallerThatCallsTooOftenGetsARetryDelay) {
-  // So few that none comes back while the test runs.
-  UseAccess(absl::StrCat("studio synthesise ", Known("s"), " calls_per_second=0.001\n",
-                         "farm synthesise ", Known("f"), "\n"));
-  Start();
-  const auto channel = PlainText();
-  EXPECT_TRUE(List(channel, "Bearer s").ok());
-  const Refusal refusal = Decode(List(channel, "Bearer s"));
-  EXPECT_EQ(refusal.code, absl::StatusCode::kResourceExhausted);
-  EXPECT_EQ(refusal.reason, "CALL_RATE_EXCEEDED");
-  EXPECT_GT(refusal.retry_seconds, 1);
-  EXPECT_LE(refusal.retry_seconds, 1000);
-  EXPECT_TRUE(List(channel, "Bearer f").ok());
-}
-
 TEST_F(SecuredServerTest, PlacesAreSharedByCallerNotByAddress) {
   UseAccess(
       absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"), "\n"));
@@ -202,7 +188,9 @@ TEST_F(SecuredServerTest, ClientAuthoritiesRotate) {
   const TestCertificate client = MakeTestCertificate("client.test", {&next});
   EXPECT_EQ(List(Tls(client)).error_code(), StatusCode::UNAVAILABLE);
   WriteTestFile(folder_ / "ca.pem", next.certificate);
-  server_->RefreshSecrets();
+  std::promise<void> reloaded;
+  server_->control().Reload([&](const auto&) { reloaded.set_value(); });
+  reloaded.get_future().wait();
   EXPECT_TRUE(List(Tls(client)).ok());
   EXPECT_EQ(List(Tls(MakeTestCertificate("client.test", {&authority_}))).error_code(),
             StatusCode::UNAVAILABLE);

@@ -258,6 +258,27 @@ TEST_F(CallTest, ActiveCallsTellLaterCallsOfDrainAndEnd) {
       << "it was admitted before the end";
 }
 
+TEST(AdmissionTest, AdmitsUpToItsLimitReservesAQuarterAndAdmitsNobodyWhileItDrains) {
+  AdmissionLimits limits;
+  limits.max_calls = 4;
+  Admission admission(limits);
+  admission.SetState(Admission::State::kServing);
+  std::vector<ShareLease> places;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_THAT(admission.CheckShare(batching::Priority::kBulk), IsOk()) << i;
+    places.push_back(*admission.Admit("a"));
+  }
+  EXPECT_THAT(admission.Admit("a"), StatusIs(StatusCode::kResourceExhausted, _));
+  EXPECT_THAT(admission.CheckShare(batching::Priority::kInteractive), IsOk());
+  EXPECT_THAT(admission.CheckShare(batching::Priority::kBulk),
+              StatusIs(StatusCode::kResourceExhausted, HasSubstr("at most 3 of this priority")));
+  places.pop_back();
+  EXPECT_THAT(admission.Admit("a"), IsOk());
+  admission.SetState(Admission::State::kDraining);
+  EXPECT_THAT(admission.Admit("a"), StatusIs(StatusCode::kUnavailable, _));
+  EXPECT_EQ(admission.calls(), 3u) << "who is in stays";
+}
+
 // A call that streams.
 class StreamTest : public CallTest {
  protected:

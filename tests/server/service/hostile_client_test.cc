@@ -317,21 +317,5 @@ TEST(LiveServiceTest, SessionsThatOpenAtOnceNeedNoRoomInTheQueue) {
   }
 }
 
-TEST(LiveServiceTest, SessionsAreBoundedByThePlacesOfCalls) {
-  test::FakeClock clock;  // no session becomes idle
-  RunningService::Setup setup = LiveSetup();
-  setup.clock = &clock;
-  setup.admission.max_calls = 3;
-  RunningService running(setup);
-  std::vector<std::unique_ptr<Session>> sessions;
-  for (int i = 0; i < 3; ++i) {
-    sessions.push_back(std::make_unique<Session>(running, Start()));
-    EXPECT_TRUE(sessions.back()->Read().has_header());
-  }
-  const Refusal refusal = RefusalOf(running, Start());
-  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
-  EXPECT_GT(refusal.retry_seconds, 0);
-}
-
 }  // namespace
 }  // namespace duet::server::service

@@ -190,25 +190,6 @@ TEST_F(LiveRepliesTest, EachFrameIsAnsweredInOrder) {
   EXPECT_EQ(report.compute_seconds, 0.5 * report.windows);
 }
 
-TEST_F(LiveRepliesTest, TheFirstFramesHaveTheRigAndEveryFrameItsRotations) {
-  v1::LiveStart start = Start();
-  start.set_reply_rotations(true);
-  Begin(start);
-  EXPECT_EQ(header_.history_frames(), 2 * kRate) << "two seconds";
-  int rig_joints = 0;
-  for (int t = 0; t < 20; ++t) {
-    Send(Frames(t, 1));
-    RunAll();
-    const Taken taken = Take();
-    ASSERT_THAT(taken.parts, SizeIs(1));
-    EXPECT_EQ(taken.parts[0].rig().empty(), t > 0);
-    if (t == 0) rig_joints = taken.parts[0].rig_size();
-    ASSERT_EQ(taken.parts[0].rotations_size(), 4 * rig_joints);
-    for (int i = 3; i < 4 * rig_joints; i += 4) EXPECT_GE(taken.parts[0].rotations(i), 0);
-  }
-  EXPECT_GT(rig_joints, kValues / 3);
-}
-
 TEST_F(LiveRepliesTest, OneWindowAtATimeAndProgressIsReported) {
   Create();
   for (int t = 0; t < 9; ++t) Send(Frames(t, 1));
@@ -339,15 +320,6 @@ TEST_F(LiveRepliesTest, AFailedWindowEndsTheSession) {
   EXPECT_EQ(scheduler_.queued_windows(), 0);
 }
 
-TEST_F(LiveRepliesTest, AWindowThatTheSchedulerRefusesEndsTheSession) {
-  Create();
-  scheduler_.Refuse(absl::ResourceExhaustedError("full"));
-  Send(Frames(0, 1));
-  const Taken taken = Take();
-  EXPECT_EQ(taken.error.code(), StatusCode::kResourceExhausted);
-  EXPECT_GT(progress_, 0);
-}
-
 TEST_F(LiveRepliesTest, AFirstWindowThatIsNotStartedInTimeEndsTheSession) {
   Create();
   Send(Frames(0, 1));
@@ -429,23 +401,6 @@ TEST_F(LiveRepliesTest, ALeaderInCentimetresEndsTheSessionWithItsFirstFrame) {
   for (float& value : *centimetres.mutable_frames()->mutable_positions()) value *= 100;
   Send(centimetres);
   EXPECT_THAT(Take().error, IsInvalid("frames.positions: expected the size of a person"));
-}
-
-TEST_F(LiveRepliesTest, ALabelChangeCountsFromTheNextFrame) {
-  std::vector<float> weights;  // of the last frame of each window
-  model_->on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
-    const std::vector<float>& labels = windows[0]->labels;
-    weights.push_back(labels[labels.size() - 6]);
-  };
-  Create();
-  Send(Frames(0, 8));
-  RunAll();
-  EXPECT_EQ(weights.back(), 1);
-  Send(LabelChange(-0.5F));
-  Send(Frames(8, 8));
-  RunAll();
-  EXPECT_EQ(weights.back(), -0.5F);
-  EXPECT_THAT(Take().error, IsOk());
 }
 
 TEST_F(LiveRepliesTest, ALabelChangeOfAFinalFrameIsRefused) {

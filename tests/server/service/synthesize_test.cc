@@ -9,7 +9,6 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -79,48 +78,6 @@ TEST(SynthesizeTest, TheHeaderSaysWhoAnswersAndHow) {
   EXPECT_EQ(header.request_id(), running.calls().WaitFor(1).request_id);
 }
 
-TEST(SynthesizeTest, TheSummaryReportsWhatRemainsAtTheConstraints) {
-  RunningService running(Serving(Echo()));
-  v1::SynthesizeRequest request = SampleRequest(200);
-  const auto add = [&request](int joint, int frame, float above) {
-    const float* at = request.leader().positions().data() + 3 * (15 * frame + joint);
-    v1::JointConstraint& constraint = *request.add_constraints();
-    constraint.set_joint_name(request.leader().joint_names(joint));
-    constraint.set_frame(static_cast<uint32_t>(frame));
-    constraint.mutable_position()->set_x(at[0]);
-    constraint.mutable_position()->set_y(at[1] + above);
-    constraint.mutable_position()->set_z(at[2]);
-  };
-  add(8, 199, 0.25F);
-  add(0, 40, 0);
-  add(2, 0, -0.5F);
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  EXPECT_THAT(reply.messages.back().summary().constraint_metres(),
-              ElementsAre(FloatNear(0.25F, 1e-4F), FloatNear(0, 1e-4F), FloatNear(0.5F, 1e-4F)));
-
-  request.clear_constraints();
-  const Reply without = Call(running.stub(), request);
-  EXPECT_EQ(without.messages.back().summary().constraint_metres_size(), 0);
-}
-
-TEST(SynthesizeTest, ChunksFollowEachOtherWithoutGaps) {
-  RunningService running;
-  v1::SynthesizeRequest request = SampleRequest(200);
-  request.set_chunk_frames(7);
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  uint32_t next = 0;
-  for (const v1::SynthesizeResponse& message : reply.messages) {
-    if (!message.has_chunk()) continue;
-    EXPECT_EQ(message.chunk().first_frame(), next);
-    EXPECT_EQ(message.chunk().positions_size(), message.chunk().frame_count() * 15 * 3);
-    next += message.chunk().frame_count();
-  }
-  EXPECT_EQ(next, 200u);
-  EXPECT_THAT(reply.ChunkFrames(), Each(Le(7)));
-}
-
 TEST(SynthesizeTest, FirstChunkIsSentAfterTheFirstWindow) {
   PuppetScheduler puppet;
   RunningService running(&puppet);
@@ -139,12 +96,24 @@ TEST(SynthesizeTest, FirstChunkIsSentAfterTheFirstWindow) {
   reader->Finish();
 }
 
-TEST(SynthesizeTest, AnswersWithTheModelsMotion) {
+TEST(SynthesizeTest, AnswersWithTheModelsMotionInChunksWithoutGaps) {
   RunningService running;
-  const v1::SynthesizeRequest request = SampleRequest(100);
-  const std::vector<float> positions = Call(running.stub(), request).Positions();
-  ASSERT_EQ(positions.size(), 100u * 15u * 3u);
-  const motion::Poses swaying = SwayingMotion(100, 15);
+  v1::SynthesizeRequest request = SampleRequest(200);
+  request.set_chunk_frames(7);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  uint32_t next = 0;
+  for (const v1::SynthesizeResponse& message : reply.messages) {
+    if (!message.has_chunk()) continue;
+    EXPECT_EQ(message.chunk().first_frame(), next);
+    EXPECT_EQ(message.chunk().positions_size(), message.chunk().frame_count() * 15 * 3);
+    next += message.chunk().frame_count();
+  }
+  EXPECT_EQ(next, 200u);
+  EXPECT_THAT(reply.ChunkFrames(), Each(Le(7)));
+  const std::vector<float> positions = reply.Positions();
+  ASSERT_EQ(positions.size(), 200u * 15u * 3u);
+  const motion::Poses swaying = SwayingMotion(200, 15);
   const absl::Span<const motion::Vec3> leader = swaying.all();
   const std::vector<float> labels = {1, 0, 0, 0, 0, 0};
   for (std::size_t i = 0; i < leader.size(); ++i) {
@@ -173,31 +142,6 @@ TEST(SynthesizeTest, LabelKeyframesReachTheModel) {
   EXPECT_NEAR(lift(0), 0, 1e-3);
   EXPECT_NEAR(lift(50), 50.0 / 99, 1e-3);
   EXPECT_NEAR(lift(99), 1, 1e-3);
-}
-
-TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
-  PuppetScheduler puppet;
-  auto model = std::make_shared<FakeSynthesizer>();
-  std::vector<engine::SynthesisWindow> seen;
-  model->on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
-    seen.push_back(*windows[0]);
-  };
-  RunningService::Setup setup;
-  setup.model = model;
-  setup.scheduler = &puppet;
-  RunningService running(setup);
-  v1::SynthesizeRequest request = SampleRequest(20);
-  request.mutable_follower_start()->mutable_root_position()->set_z(-2);
-  request.mutable_partner_direction()->set_z(-3);
-  TimedContext context;
-  const auto reader = running.stub().Synthesize(&context, request);
-  puppet.RunNext();
-  EXPECT_TRUE(ReadAll(*reader).status.ok());
-  ASSERT_EQ(seen.size(), 1u);
-  ASSERT_TRUE(seen[0].start.has_value());
-  EXPECT_EQ(seen[0].start->root, (motion::Vec3{0, 0, -2}));
-  ASSERT_TRUE(seen[0].partner_direction.has_value());
-  EXPECT_EQ(*seen[0].partner_direction, (motion::Vec3{0, 0, -1}));
 }
 
 TEST(SynthesizeTest, RepliesWithTheRequestedJointsInTheirOrder) {
@@ -275,23 +219,6 @@ TEST(SynthesizeTest, AnswersTenMinutesWithABoundedBuffer) {
   EXPECT_EQ(std::accumulate(chunks.begin(), chunks.end(), 0), 9000);
   // The last window of 46 frames also brings two that the spline held back before.
   EXPECT_LT(running.calls().WaitFor(1).peak_buffered_frames, 60 + 46 + 2);
-}
-
-TEST(SynthesizeTest, AnswersManyCallsAtOnce) {
-  RunningService running;
-  const Reply expected = Call(running.stub(), SampleRequest(150));
-  std::vector<std::thread> callers;
-  std::vector<Reply> replies(8);
-  for (Reply& reply : replies) {
-    callers.emplace_back([&] {
-      for (int i = 0; i < 5; ++i) reply = Call(running.stub(), SampleRequest(150));
-    });
-  }
-  for (std::thread& caller : callers) caller.join();
-  for (const Reply& reply : replies) {
-    EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
-    EXPECT_EQ(reply.Positions(), expected.Positions());
-  }
 }
 
 // What seed, variety, candidates and clean_up do on their way to the network and back.

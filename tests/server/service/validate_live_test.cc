@@ -108,29 +108,6 @@ TEST(ValidateLiveStartTest, AHistoryFromFrameZeroHasTheFirstFrames) {
   EXPECT_EQ(valid->rig_follower[0][2].y, valid->live.follower[0][2].y);
 }
 
-TEST(ValidateLiveStartTest, HistoryIsReadInTheCallersUnitAndOrder) {
-  v1::LiveStart start = Resumed();
-  const absl::StatusOr<ValidatedLiveStart> metres = Validate(start);
-  start.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES);
-  for (float& value : *start.mutable_leader()->mutable_positions()) value *= 1000;
-  for (float& value : *start.mutable_history()->mutable_follower_positions()) value *= 1000;
-  const auto swap = [](google::protobuf::RepeatedField<float>& positions) {
-    for (int first = 0; first < positions.size(); first += kJoints * 3) {
-      for (int i = 0; i < 3; ++i) positions.SwapElements(first + i, first + 3 + i);
-    }
-  };
-  start.mutable_leader()->mutable_joint_names()->SwapElements(0, 1);
-  swap(*start.mutable_leader()->mutable_positions());
-  swap(*start.mutable_history()->mutable_follower_positions());
-  const absl::StatusOr<ValidatedLiveStart> other = Validate(start);
-  ASSERT_THAT(metres, IsOk());
-  ASSERT_THAT(other, IsOk());
-  for (int j = 0; j < kJoints; ++j) {
-    EXPECT_NEAR(other->live.follower[3][j].x, metres->live.follower[3][j].x, 1e-5);
-    EXPECT_NEAR(other->live.leader[3][j].z, metres->live.leader[3][j].z, 1e-5);
-  }
-}
-
 TEST(ValidateLiveStartTest, ModelThatDoesNotContinueIsRefused) {
   const Refusal refusal = Decode(Validate(New(), test::FakeDescription()).status());
   EXPECT_EQ(refusal.code, kFailedPrecondition);

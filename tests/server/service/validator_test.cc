@@ -142,8 +142,6 @@ const struct {
      "leader.frame_count", "expected at least 2, got 1"},
     {Text("leader { frame_rate_hz: 0 }"), "leader.frame_rate_hz",
      "expected 1 to 240 frames per second, got 0"},
-    {Text("leader { frame_rate_hz: 240.5 }"), "leader.frame_rate_hz",
-     "frames per second, got 240.5"},
     {Text("leader { frame_rate_hz: nan }"), "leader.frame_rate_hz",
      "expected 1 to 240 frames per second, got nan"},
     {Text("leader { unit: 0 }"), "leader.unit",
@@ -194,8 +192,6 @@ const struct {
      "label_vector.weights[1].interaction_class", "got \"kick\" again after weights[0]"},
     {Text("label_vector { weights { interaction_class: 'hug' weight: 2.5 } }"),
      "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got 2.5"},
-    {Text("label_vector { weights { interaction_class: 'hug' weight: nan } }"),
-     "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got nan"},
     {Times(1000, "label_vector { weights { interaction_class: 'x' } }"), "label_vector.weights",
      "expected at most one weight for each of 6 classes, got 1001"},
     {Keyframes(1, std::string(kHug).replace(24, 2, "40")), "label_keyframes[0].frame",
@@ -212,7 +208,6 @@ const struct {
     {Pose(45, kNan), "follower_start.pose.positions[44]", "expected a finite number, got nan"},
 
     {Text("chunk_frames: 0"), "chunk_frames", "expected 1 to 240, got 0"},
-    {Text("chunk_frames: 4294967295"), "chunk_frames", "expected 1 to 240, got 4294967295"},
     {[](Request& r) { r.set_priority(static_cast<v1::Priority>(9)); }, "priority",
      "or no value, got 9"},
     {Text("reply_joint_names: 'tail'"), "reply_joint_names[0]",
@@ -227,7 +222,6 @@ const struct {
      "expected no reply_joint_names: a rig needs every joint, got 1"},
     {Text("variety: nan"), "variety", "expected a finite value in [0, 2], got nan"},
     {Text("reaction: -0.5"), "reaction", "expected a finite value in [0, 2], got -0.5"},
-    {Text("candidates: 0"), "candidates", "expected 1 to 16, got 0"},
     {Text("candidates: 4294967295"), "candidates", "expected 1 to 16, got 4294967295"},
     {[](Request& r) { r.set_clean_up(static_cast<v1::CleanUp>(9)); }, "clean_up",
      "expected CLEAN_UP_ON, CLEAN_UP_OFF or no value, got 9"},
@@ -240,7 +234,6 @@ const struct {
     {Text("up {}"), "up",
      "expected a direction of any length but 0, less than 45 degrees from UP_AXIS_Y_UP, got (0, "
      "0, 0)"},
-    {Text("up { y: 1 z: 1.001 }"), "up", "got (0, 1, 1.001)"},
     {Text("up { y: 2 z: 1 } partner_direction { y: 4 z: 2 }"), "partner_direction",
      "neither vertical nor of length 0, got (0, 4, 2)"},
 
