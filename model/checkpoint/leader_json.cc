@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
-#include "model/engine/leader_features.h"
+#include "model/engine/leader_statistics.h"
 
 namespace duet::checkpoint {
 namespace {

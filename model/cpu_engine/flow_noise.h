@@ -7,7 +7,7 @@
 #include "model/checkpoint/architecture.h"
 #include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/cpu_engine/scratch.h"
-#include "model/engine/synthesis_options.h"
+#include "model/engine/synthesizer.h"
 
 namespace duet::cpu_engine {
 

@@ -7,7 +7,7 @@
 
 #include "model/body/contact.h"
 #include "model/body/grade.h"
-#include "model/engine/window_seed.h"
+#include "model/engine/windows.h"
 #include "model/solver/pins.h"
 
 namespace duet::engine {

@@ -8,7 +8,7 @@
 #include "model/body/limbs.h"
 #include "model/engine/critic.h"
 #include "model/engine/model_description.h"
-#include "model/engine/synthesis_options.h"
+#include "model/engine/synthesizer.h"
 #include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"

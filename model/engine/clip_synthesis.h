@@ -8,15 +8,13 @@
 
 #include "model/body/grade.h"
 #include "model/body/limbs.h"
-#include "model/engine/clip_grader.h"
-#include "model/engine/cross_fade.h"
 #include "model/engine/label_track.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
-#include "model/engine/window_plan.h"
-#include "model/engine/window_state.h"
+#include "model/engine/windows.h"
 #include "model/motion/pin.h"
 #include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 #include "model/solver/body_model.h"
 
@@ -35,6 +33,36 @@ struct ClipRequest {
   SynthesisOptions options = {};
   // Where joints of the follower must be, in the caller's frames and level world metres.
   motion::Pins pins = {};
+};
+
+// Grades a follower part by part, as its frames become final.
+//
+// Cost:    linear in the frames; keeps one frame.
+// Threads: not safe to call concurrently.
+class ClipGrader {
+ public:
+  // Null if the skeleton lacks joints that the grade needs (body::PairMeter). Requires a skeleton
+  // that Validate accepts.
+  static std::unique_ptr<ClipGrader> Create(const motion::Skeleton& skeleton, double frame_rate_hz);
+
+  // The meter refers to the members before it.
+  ClipGrader(const ClipGrader&) = delete;
+  ClipGrader& operator=(const ClipGrader&) = delete;
+
+  // Adds the frames of the follower after those added before. `leader`: the whole clip. Shapes:
+  // leader [all frames, joints]; follower [frames, joints].
+  void Add(const motion::Poses& leader, const motion::Poses& follower);
+  // Requires at least one frame.
+  body::Grade Get() const { return sum_.Get(); }
+
+ private:
+  ClipGrader(const motion::Skeleton& skeleton, body::Body body, double frame_rate_hz);
+
+  const motion::Skeleton skeleton_;
+  const body::Body body_;
+  body::PairMeter meter_;
+  body::GradeSum sum_;
+  int frames_ = 0;
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.

@@ -11,10 +11,19 @@
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 #include "model/solver/body_model.h"
 
 namespace duet::engine {
+
+// Returns what a leader is taken to do after its last known frame, while the true motion is still
+// unknown: it comes to rest, with constant limb lengths. Live synthesis and its training share it.
+//
+// Shapes: known [frames, joints], at least one frame; seconds [n], each above 0, from the last
+//         known frame on; returns [n, joints].
+motion::Poses ComeToRest(const motion::Skeleton& skeleton, const motion::Poses& known,
+                         double frame_rate_hz, absl::Span<const double> seconds);
 
 // A validated request for a live session.
 struct LiveRequest {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/engine/window_plan.h"
+#include "model/engine/windows.h"
 
 namespace duet::engine {
 namespace {

@@ -1,21 +1,38 @@
 #include "model/engine/network_synthesizer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "model/engine/candidates.h"
+#include "model/engine/clip_synthesis.h"
 #include "model/engine/finishing.h"
+#include "model/engine/leader_statistics.h"
 #include "model/engine/mixture.h"
 #include "model/engine/standard_window.h"
-#include "model/engine/unfamiliarity.h"
-#include "model/engine/window_standardisation.h"
+#include "model/engine/windows.h"
+#include "model/motion/resample.h"
 #include "model/solver/follower.h"
 
 namespace duet::engine {
 namespace {
+
+// Windows that are measured need share no more than the frame they meet in.
+constexpr int kOverlap = 1;
+
+motion::Poses LeaderWindow(const ModelDescription& model, const ClipRequest& request, int start,
+                           int length) {
+  motion::Poses window(length, model.skeleton.joint_count());
+  for (int t = 0; t < length; ++t) {
+    SampleLinear(request.leader, (start + t) * request.frame_rate_hz / model.frame_rate_hz,
+                 window[t]);
+  }
+  return window;
+}
 
 using Windows = absl::Span<const SynthesisWindow* const>;
 
@@ -59,7 +76,22 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
   std::optional<double> Unfamiliarity(const ClipRequest& request) const override {
-    return engine::Unfamiliarity(description_, request);
+    const ModelDescription& model = description_;
+    if (!model.leader_statistics) return std::nullopt;
+    const int frames = motion::ResampledFrameCount(request.leader.frame_count(),
+                                                   request.frame_rate_hz, model.frame_rate_hz);
+    const WindowPlan plan = PlanWindows(frames, model.window_frames, kOverlap);
+    std::vector<double> windows;
+    for (const int start : plan.starts) {
+      windows.push_back(engine::Unfamiliarity(*model.leader_statistics, model.skeleton,
+                                              LeaderWindow(model, request, start, plan.length),
+                                              model.frame_rate_hz));
+      // Positions may be as large as a float can be.
+      if (!std::isfinite(windows.back())) return std::nullopt;
+    }
+    // The value that a tenth of the windows exceeds: a long familiar part does not hide an
+    // unfamiliar one.
+    return NinthDecile(std::move(windows));
   }
 
  private:
@@ -194,6 +226,21 @@ class NetworkSynthesizer : public Synthesizer {
   const CandidateJudge judge_;
 };
 
+constexpr motion::StandardOrigin kOrigin = motion::StandardOrigin::kFirstFrame;
+
+// A network that returns the same followers to every call.
+class GivenFollowers : public Network {
+ public:
+  explicit GivenFollowers(std::vector<motion::Poses> followers)
+      : followers_(std::move(followers)) {}
+  absl::StatusOr<std::vector<motion::Poses>> Run(absl::Span<const NetworkInput>) const override {
+    return followers_;
+  }
+
+ private:
+  const std::vector<motion::Poses> followers_;
+};
+
 }  // namespace
 
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
@@ -203,6 +250,23 @@ std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              std::optional<Critic> critic) {
   return std::make_unique<NetworkSynthesizer>(std::move(description), origin, std::move(network),
                                               options, std::move(critic));
+}
+
+std::vector<WindowResult> FinishMotions(const ModelDescription& description,
+                                        const std::vector<SynthesisWindow>& windows,
+                                        const std::vector<motion::Poses>& followers) {
+  std::vector<motion::Poses> standard;
+  std::vector<SynthesisWindow> copies = windows;
+  std::vector<const SynthesisWindow*> pointers;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    standard.push_back(
+        WindowStandardisation(description.skeleton, windows[i], kOrigin).Apply(followers[i]));
+    copies[i].options.sampling.candidates = 1;
+    pointers.push_back(&copies[i]);
+  }
+  return MakeSynthesizer(description, kOrigin,
+                         std::make_unique<GivenFollowers>(std::move(standard)))
+      ->Synthesize(pointers);
 }
 
 }  // namespace duet::engine

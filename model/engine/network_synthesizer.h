@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "model/engine/critic.h"
 #include "model/engine/model_description.h"
 #include "model/engine/network.h"
 #include "model/engine/synthesizer.h"
+#include "model/motion/poses.h"
 #include "model/motion/standardise.h"
 
 namespace duet::engine {
@@ -35,6 +37,14 @@ std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              std::unique_ptr<const Network> network,
                                              const PipelineOptions& options = {},
                                              std::optional<Critic> critic = std::nullopt);
+
+// Followers as a server would return them if a network had answered so: with the limb lengths of
+// the window's start or leader, on the leader's floor, cleaned up. Passing captured followers
+// through the same stages makes them comparable with answers: what still tells them apart is the
+// motion, not a stage. `followers` in the world, like the leaders of `windows`.
+std::vector<WindowResult> FinishMotions(const ModelDescription& description,
+                                        const std::vector<SynthesisWindow>& windows,
+                                        const std::vector<motion::Poses>& followers);
 
 }  // namespace duet::engine
 

@@ -9,11 +9,10 @@
 
 #include "absl/types/span.h"
 #include "model/motion/filter.h"
+#include "model/solver/feet.h"
 #include "model/solver/geometry.h"
 #include "model/solver/pins.h"
 #include "model/solver/smoother.h"
-#include "model/solver/stature.h"
-#include "model/solver/steps.h"
 
 namespace duet::solver {
 namespace {
@@ -42,7 +41,7 @@ constexpr float kClearBend = 0.05f, kDown = 0.8f, kBack = 0.6f;
 constexpr double kBendSeconds = 0.1;
 
 // The place of a foot: as planned, or drawn along the floor towards the hip as far as the leg needs
-// it. The body does not come down to any foot (stature.cc).
+// it. The body does not come down to any foot (KeepStature).
 Vec3 DrawnAlong(const body::Limb& leg, absl::Span<const Vec3> pose, Vec3 place) {
   const Vec3 way = place - JointAt(pose, leg.upper);
   const float length = body::LengthOf(leg, pose), level = Norm(Level(way));

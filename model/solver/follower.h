@@ -10,8 +10,8 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/solver/body_model.h"
+#include "model/solver/feet.h"
 #include "model/solver/partner.h"
-#include "model/solver/stature.h"
 #include "model/solver/trunk.h"
 
 namespace duet::solver {

@@ -11,7 +11,7 @@
 #include "model/motion/feet.h"
 #include "model/motion/filter.h"
 #include "model/solver/body_model.h"
-#include "model/solver/footing.h"
+#include "model/solver/feet.h"
 #include "model/solver/smoother.h"
 
 namespace duet::solver {

@@ -12,7 +12,7 @@ namespace duet::solver {
 double StandingHeight(const motion::Skeleton& skeleton, const motion::Poses& person);
 
 // Turns a capture into the motion of a body, over the whole clip at once: constant bones, a rigid
-// pelvis, rigid shoulders, feet that stand where they stand (footing.h). The height of the body
+// pelvis, rigid shoulders, feet that stand where they stand (feet.h). The height of the body
 // follows from how far its legs are stretched in the capture, so that knees keep their bend. A
 // smooth correction is added to the body's place and the pelvis rolls a little; trunk, head and
 // hands keep their directions, their timing and their amplitude.

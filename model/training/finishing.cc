@@ -7,12 +7,14 @@
 #include <cstddef>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "model/base/random.h"
 #include "model/checkpoint/architecture.h"
+#include "model/engine/capture_fits.h"
 #include "model/engine/critic.h"
-#include "model/engine/finished_motions.h"
 #include "model/engine/network_synthesizer.h"
 #include "model/motion/filter.h"
 #include "model/motion/poses.h"
@@ -28,6 +30,25 @@ namespace duet::training {
 namespace {
 
 constexpr std::size_t kWindowsTogether = 64;
+
+// The captured pairs of some sequences; of one class: only its stretches.
+engine::Stretches StretchesOf(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                              std::optional<int> interaction_class = std::nullopt) {
+  engine::Stretches stretches;
+  for (const int index : sequences) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<std::size_t>(index)];
+    const motion::ClipPair& pair = sequence.pair;
+    std::vector<dataset::LabelSpan> spans = sequence.labels;
+    if (spans.empty() || !interaction_class) {
+      spans = {{sequence.interaction_class, 0, pair.leader.frame_count()}};
+    }
+    for (const dataset::LabelSpan& span : spans) {
+      if (interaction_class.value_or(span.interaction_class) != span.interaction_class) continue;
+      stretches.push_back({&pair.leader.poses, &pair.follower.poses, span.begin, span.end});
+    }
+  }
+  return stretches;
+}
 
 // The generator as the engine sees it.
 class GeneratorNetwork : public engine::Network {
@@ -52,6 +73,24 @@ class GeneratorNetwork : public engine::Network {
 };
 
 }  // namespace
+
+void MeasurePairs(const dataset::Dataset& whole, const std::vector<int>& takes,
+                  const dataset::Dataset& dataset, const std::vector<int>& train,
+                  engine::ModelDescription* model) {
+  const motion::Skeleton& skeleton = dataset.skeleton;
+  const double rate = dataset.frame_rate_hz;
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    const std::string& name = dataset.classes[static_cast<std::size_t>(c)];
+    const engine::Stretches windows = StretchesOf(dataset, train, c);
+    if (const auto metres = engine::HandContactMetres(skeleton, windows, rate)) {
+      model->hand_contacts.push_back({name, *metres});
+    }
+    if (const auto degrees = engine::FacingDegrees(skeleton, StretchesOf(whole, takes, c), rate)) {
+      model->facing_classes.push_back({name, std::round(*degrees)});
+    }
+  }
+  model->bone_ratios = engine::BoneRatios(skeleton, StretchesOf(whole, takes));
+}
 
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> SynthesizerOf(
     const checkpoint::Checkpoint& checkpoint) {

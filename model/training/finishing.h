@@ -11,9 +11,16 @@
 #include "model/engine/synthesizer.h"
 #include "model/training/options.h"
 
-// What is learnt from the answers of a finished generator.
+// What is learnt from captured pairs without a generator, and from the answers of a finished one.
 
 namespace duet::training {
+
+// Fills in what captured pairs show about how people meet: contacts of hands of each class, from
+// the windows `train` that the data set is cut into; how far followers are turned away, and how
+// large they are, from the `takes` of the whole data set.
+void MeasurePairs(const dataset::Dataset& whole, const std::vector<int>& takes,
+                  const dataset::Dataset& dataset, const std::vector<int>& train,
+                  engine::ModelDescription* model);
 
 // A finished generator that samples, with the stages of a server around it. `checkpoint` has to
 // outlive it. Errors: tensors that do not fit the manifest.

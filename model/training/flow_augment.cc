@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/base/angle.h"
-#include "model/engine/resting_leader.h"
+#include "model/engine/live_synthesis.h"
 #include "model/motion/limb_lengths.h"
 
 namespace duet::training {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "model/engine/standard_window.h"
-#include "model/engine/window_standardisation.h"
 #include "model/motion/filter.h"
 #include "model/network/batch.h"
 #include "model/training/flow_augment.h"

@@ -17,9 +17,6 @@
 #include "model/base/status_macros.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/dataset/time_line.h"
-#include "model/engine/body_fit.h"
-#include "model/engine/facing_fit.h"
-#include "model/engine/hand_contact_fit.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/exceptions.h"
 #include "model/training/direction_fit.h"
@@ -91,46 +88,6 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   return manifest;
 }
 
-// Adds every stretch of a class to a fit (HandContactFit, FacingFit).
-template <typename Fit>
-void AddStretches(const dataset::Dataset& dataset, const std::vector<int>& sequences,
-                  int interaction_class, Fit* fit) {
-  for (const int index : sequences) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    const motion::ClipPair& pair = sequence.pair;
-    const auto add = [&](const dataset::LabelSpan& span) {
-      if (span.interaction_class != interaction_class) return;
-      fit->Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
-    };
-    std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
-    if (sequence.labels.empty()) add({sequence.interaction_class, 0, pair.leader.frame_count()});
-  }
-}
-
-void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& sequences,
-                  engine::ModelDescription* model) {
-  for (int c = 0; c < dataset.class_count(); ++c) {
-    const std::string& name = dataset.classes[static_cast<size_t>(c)];
-    engine::HandContactFit hands(dataset.skeleton);
-    AddStretches(dataset, sequences, c, &hands);
-    if (const std::optional<double> metres = hands.Metres(dataset.frame_rate_hz)) {
-      model->hand_contacts.push_back({name, *metres});
-    }
-  }
-}
-
-std::vector<engine::FacingClass> FindFacingClasses(const dataset::Dataset& dataset,
-                                                   const std::vector<int>& sequences) {
-  std::vector<engine::FacingClass> classes;
-  for (int c = 0; c < dataset.class_count(); ++c) {
-    engine::FacingFit fit(dataset.skeleton, dataset.frame_rate_hz);
-    AddStretches(dataset, sequences, c, &fit);
-    const std::optional<double> degrees = fit.Degrees();
-    if (degrees) classes.push_back({dataset.classes[static_cast<size_t>(c)], std::round(*degrees)});
-  }
-  return classes;
-}
-
 // What the description of a model says of its training data: `takes` of the whole data set, and the
 // windows `train` that they are cut into.
 void Measure(const dataset::Dataset& whole, const std::vector<int>& takes,
@@ -142,14 +99,7 @@ void Measure(const dataset::Dataset& whole, const std::vector<int>& takes,
   }
   model->leader_statistics =
       engine::FitLeaderStatistics(dataset.skeleton, leaders, dataset.frame_rate_hz);
-  FindContacts(dataset, train, model);
-  model->facing_classes = FindFacingClasses(whole, takes);
-  engine::BodyFit body(whole.skeleton);
-  for (const int index : takes) {
-    const motion::ClipPair& pair = whole.sequences[static_cast<size_t>(index)].pair;
-    body.Add(pair.leader.poses, pair.follower.poses);
-  }
-  model->bone_ratios = body.BoneRatios();
+  MeasurePairs(whole, takes, dataset, train, model);
   if (FlowIn(options) != nullptr) model->partner_direction = FitPartnerDirection(dataset, train);
 }
 

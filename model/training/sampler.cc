@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "model/engine/standard_window.h"
-#include "model/engine/window_standardisation.h"
 
 namespace duet::training {
 namespace {

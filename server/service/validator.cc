@@ -8,7 +8,7 @@
 #include "absl/strings/str_join.h"
 #include "model/base/text.h"
 #include "model/engine/candidates.h"
-#include "model/engine/window_seed.h"
+#include "model/engine/windows.h"
 #include "server/service/request_fields.h"
 
 namespace duet::server::service {

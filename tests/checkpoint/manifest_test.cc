@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
-#include "model/engine/window_plan.h"
+#include "model/engine/windows.h"
 #include "tests/checkpoint/edited_manifest.h"
 #include "tests/support/architectures.h"
 #include "tests/support/matchers.h"

@@ -4,7 +4,6 @@
 
 #include "gmock/gmock.h"
 #include "model/authoring/puppet.h"
-#include "model/engine/hand_contact_fit.h"
 #include "tests/support/bodies.h"
 
 namespace duet::engine {
@@ -115,60 +114,6 @@ TEST(CandidateVariety, RisesOnlyForSeveralBelowOne) {
   EXPECT_EQ(CandidateVariety(0, 4), 0.5f);
   EXPECT_EQ(CandidateVariety(1, 4), 1);
   EXPECT_EQ(CandidateVariety(1.5f, 4), 1.5f);
-}
-
-struct Pair {
-  motion::Poses leader, follower;
-};
-
-// A leader who stretches out a hand, and a follower whose hand is `gap` away from it.
-Pair Offering(float gap) {
-  motion::Poses leader = Puppet(), follower = Away(0, 1.2f);
-  for (int t = 0; t < kFrames; ++t) {
-    leader.at(t, 7) = leader.at(t, 2) + Vec3{0, 0.2f, 0.35f};
-    leader.at(t, 8) = leader.at(t, 2) + Vec3{0, 0.2f, 0.6f};
-    follower.at(t, 8) = leader.at(t, 8) + Vec3{0, 0, gap};
-  }
-  return {leader, follower};
-}
-
-std::optional<double> Fitted(float gap, int frames = kFrames) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const Pair pair = Offering(gap);
-  HandContactFit fit(skeleton);
-  fit.Add(pair.leader, pair.follower, 0, frames);
-  return fit.Metres(kRate);
-}
-
-TEST(HandContactFit, FindsTheDistanceOfHandsThatMeet) {
-  ASSERT_TRUE(Fitted(0.1f).has_value());
-  EXPECT_NEAR(*Fitted(0.1f), 0.1, 1e-6);
-}
-
-TEST(HandContactFit, IgnoresHandsThatComeAndGo) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  HandContactFit fit(skeleton);
-  for (const float gap : {0.1f, 0.2f, 0.24f}) {
-    const Pair pair = Offering(gap);
-    fit.Add(pair.leader, pair.follower, 0, kFrames);
-  }
-  EXPECT_NEAR(fit.Metres(kRate).value_or(0), 0.1, 1e-6);
-}
-
-// One long stretch in which hands meet must not decide about a class in which they seldom do.
-TEST(HandContactFit, EveryStretchCountsTheSame) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  HandContactFit fit(skeleton);
-  const Pair meets = Offering(0.1f), misses = Offering(0.4f);
-  fit.Add(meets.leader, meets.follower, 0, kFrames);
-  EXPECT_TRUE(fit.Metres(kRate).has_value());
-  for (int t = 0; t < 6; t += 2) fit.Add(misses.leader, misses.follower, t, t + 2);
-  EXPECT_FALSE(fit.Metres(kRate).has_value());
-}
-
-TEST(HandContactFit, NeedsHandsThatMeetForLongEnough) {
-  EXPECT_FALSE(Fitted(0.4f).has_value());
-  EXPECT_FALSE(Fitted(0.1f, kFrames - 5).has_value());
 }
 
 }  // namespace

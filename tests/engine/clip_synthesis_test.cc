@@ -10,8 +10,8 @@
 #include "gtest/gtest.h"
 #include "model/body/grade.h"
 #include "model/body/limbs.h"
-#include "model/engine/live_clip.h"
-#include "model/engine/window_seed.h"
+#include "model/engine/clips_together.h"
+#include "model/engine/windows.h"
 #include "model/motion/resample.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
@@ -25,6 +25,7 @@ using test::FakeDraw;
 using test::FakeSynthesizer;
 using test::SamplingDescription;
 using test::SwayingMotion;
+using ::testing::ElementsAre;
 
 constexpr int kJoints = 15;
 
@@ -171,16 +172,6 @@ TEST(ClipSynthesis, AHigherRateIsASplineThroughTheBlendedFrames) {
   ExpectNear(fast, wanted, 1e-5f);
 }
 
-TEST(ClipSynthesis, HandsOutFramesAfterTheFirstWindow) {
-  const FakeSynthesizer fake;
-  const Outcome run = RunAll(fake, Request(600, 30));
-  ASSERT_GT(run.windows.size(), 5u);
-  EXPECT_GT(run.frames_after.front(), 20);
-  for (std::size_t k = 1; k < run.frames_after.size(); ++k) {
-    EXPECT_GT(run.frames_after[k], run.frames_after[k - 1]);
-  }
-}
-
 TEST(ClipSynthesis, NeverTakesBackAFrame) {
   // The answer changes completely from window to window, yet a frame that was handed out depends
   // on earlier windows only: a run that is cut short gave the same frames.
@@ -214,17 +205,6 @@ TEST(ClipSynthesis, NextWindowIsTheSameUntilAccepted) {
   EXPECT_NE(clip.NextWindow().leader, a.leader);
 }
 
-TEST(ClipSynthesis, StartGoesToTheFirstWindow) {
-  const FakeSynthesizer fake;
-  ClipRequest request = Request(30, 15);
-  request.start = FollowerStart{{1, 2, 3}, {}};
-  const Outcome run = RunAll(fake, request);
-  ASSERT_EQ(run.windows.size(), 1u);
-  ASSERT_TRUE(run.windows[0].start.has_value());
-  EXPECT_EQ(run.windows[0].start->root, (motion::Vec3{1, 2, 3}));
-  EXPECT_TRUE(run.windows[0].start->pose.empty());
-}
-
 TEST(ClipSynthesis, LaterWindowsStartWhereTheEarlierOnesGot) {
   const FakeSynthesizer fake;
   const ClipRequest request = Request(200, 15);
@@ -236,6 +216,7 @@ TEST(ClipSynthesis, LaterWindowsStartWhereTheEarlierOnesGot) {
     ASSERT_TRUE(run.windows[k].start.has_value()) << k;
     const FollowerStart& start = *run.windows[k].start;
     ASSERT_EQ(start.pose.size(), 15u);
+    EXPECT_TRUE(run.windows[k].settled.empty()) << "the model does not sample";
     EXPECT_EQ(start.root, start.pose[2]);
     for (int j = 0; j < kJoints; ++j) {
       const motion::Vec3 wanted = FakeAnswer(request.leader.at(starts[k], j), {});
@@ -245,32 +226,32 @@ TEST(ClipSynthesis, LaterWindowsStartWhereTheEarlierOnesGot) {
   }
 }
 
-TEST(ClipSynthesis, NoStartsForAModelWithoutThem) {
-  ModelDescription description = FakeDescription();
-  description.accepts_follower_start = false;
-  const Outcome run = RunAll(FakeSynthesizer(description), Request(200, 15));
-  for (const SynthesisWindow& window : run.windows) EXPECT_FALSE(window.start.has_value());
-}
-
-TEST(ClipSynthesis, PartnerDirectionGoesToTheFirstWindow) {
+// Later windows have the follower's position.
+TEST(ClipSynthesis, StartAndPartnerDirectionGoToTheFirstWindow) {
   ClipRequest request = Request(200, 15);
+  request.start = FollowerStart{{1, 2, 3}, {}};
   request.partner_direction = motion::Vec3{1, 0, 0};
   const Outcome run = RunAll(FakeSynthesizer(), request);
+  EXPECT_EQ(run.windows[0].start.value().root, (motion::Vec3{1, 2, 3}));
+  EXPECT_TRUE(run.windows[0].start->pose.empty());
   EXPECT_EQ(run.windows[0].partner_direction, request.partner_direction);
-  // Later windows have the follower's position.
   for (std::size_t k = 1; k < run.windows.size(); ++k) {
     EXPECT_FALSE(run.windows[k].partner_direction.has_value()) << k;
   }
 }
 
-TEST(ClipSynthesis, PartnerDirectionGoesToEveryWindowWithoutAStart) {
-  ModelDescription description = FakeDescription();
-  description.accepts_follower_start = false;
-  ClipRequest request = Request(200, 15);
-  request.partner_direction = motion::Vec3{1, 0, 0};
-  const Outcome run = RunAll(FakeSynthesizer(description), request);
-  for (const SynthesisWindow& window : run.windows) {
-    EXPECT_EQ(window.partner_direction, request.partner_direction);
+TEST(ClipSynthesis, AModelThatTakesNoStartGetsTheDirectionInEveryWindow) {
+  for (ModelDescription description : {FakeDescription(), SamplingDescription()}) {
+    description.accepts_follower_start = false;
+    ClipRequest request = Request(200, 15);
+    request.partner_direction = motion::Vec3{1, 0, 0};
+    const Outcome run = RunAll(FakeSynthesizer(description), request);
+    EXPECT_EQ(run.windows.size(), PlanWindows(200, 46, CrossFadeOverlap(46)).starts.size());
+    for (const SynthesisWindow& window : run.windows) {
+      EXPECT_FALSE(window.start.has_value());
+      EXPECT_TRUE(window.settled.empty());
+      EXPECT_EQ(window.partner_direction, request.partner_direction);
+    }
   }
 }
 
@@ -288,13 +269,6 @@ TEST(ClipSynthesis, LabelsFollowTheirKeyframesAtAnyRate) {
         << frame;
   }
   ExpectNear(run.follower, UnwindowedAnswer(request, 15), 1e-5f);
-}
-
-TEST(ClipSynthesis, TwoFramesAtTheHighestRate) {
-  const Outcome run = RunAll(FakeSynthesizer(), Request(2, 240));
-  ASSERT_EQ(run.windows.size(), 1u);
-  EXPECT_EQ(run.windows[0].leader.frame_count(), 2);
-  EXPECT_EQ(run.follower.frame_count(), 2);
 }
 
 TEST(ClipSynthesis, TenMinutesCostTenMinutesOfFrames) {
@@ -453,51 +427,27 @@ TEST(ClipSynthesis, AModelThatSamplesGoesOnFromSettledFrames) {
   }
 }
 
-TEST(ClipSynthesis, SettledFramesStayAsTheWindowBeforeMadeThem) {
-  // The fake draws another place for each window, and answers settled frames as they are: nothing
-  // is averaged.
-  ClipRequest request = Request(100, 15);
-  request.options.sampling = {41, 1};
-  const Outcome run = RunAll(FakeSynthesizer(SamplingDescription()), request);
-  const std::vector<int> starts = PlanWindows(100, 46, SettledOverlap(46)).starts;
-  for (int t = 0; t < 100; ++t) {
-    const motion::Vec3 wanted = FakeAnswer(request.leader.at(t, 0), {}) +
-                                FakeDraw({WindowSeed(41, WindowThatSettles(t, starts)), 1});
-    EXPECT_LT(Distance(run.follower.at(t, 0), wanted), 1e-5f) << t;
-  }
-}
-
-TEST(ClipSynthesis, TheNextWindowReplacesTheLookahead) {
-  ModelDescription description = SamplingDescription();
-  description.lookahead_frames = 15;
-  ClipRequest request = Request(300, 15);
-  request.options.sampling = {41, 1};
-  const Outcome run = RunAll(FakeSynthesizer(description), request);
-  const std::vector<int> starts = PlanWindows(300, 46, SettledOverlap(46) + 15).starts;
-  ASSERT_EQ(run.windows.size(), starts.size());
-  for (std::size_t k = 1; k < starts.size(); ++k) {
-    EXPECT_GE(starts[k - 1] + 46 - 15, starts[k] + SettledOverlap(46)) << k;
-    EXPECT_EQ(run.windows[k].settled.frame_count(), SettledOverlap(46)) << k;
-  }
-  ASSERT_EQ(run.follower.frame_count(), 300);
-  for (int t = 0; t < 300; ++t) {
-    const motion::Vec3 wanted = FakeAnswer(request.leader.at(t, 0), {}) +
-                                FakeDraw({WindowSeed(41, WindowThatSettles(t, starts)), 1});
-    EXPECT_LT(Distance(run.follower.at(t, 0), wanted), 1e-5f) << t;
-  }
-}
-
-TEST(ClipSynthesis, AModelThatTakesNoStartGoesOnFromNothing) {
-  ModelDescription description = SamplingDescription();
-  description.accepts_follower_start = false;
-  const Outcome run = RunAll(FakeSynthesizer(description), Request(200, 15));
-  EXPECT_EQ(run.windows.size(), PlanWindows(200, 46, CrossFadeOverlap(46)).starts.size());
-  for (const SynthesisWindow& window : run.windows) EXPECT_TRUE(window.settled.empty());
-}
-
-TEST(ClipSynthesis, AModelThatDoesNotSampleHasNothingSettled) {
-  for (const SynthesisWindow& window : RunAll(FakeSynthesizer(), Request(200, 15)).windows) {
-    EXPECT_TRUE(window.settled.empty());
+// The fake draws another place for each window, and answers settled frames as they are: nothing is
+// averaged.
+TEST(ClipSynthesis, TheNextWindowKeepsSettledFramesAndReplacesTheLookahead) {
+  for (const int lookahead : {0, 15}) {
+    ModelDescription description = SamplingDescription();
+    description.lookahead_frames = lookahead;
+    ClipRequest request = Request(300, 15);
+    request.options.sampling = {41, 1};
+    const Outcome run = RunAll(FakeSynthesizer(description), request);
+    const std::vector<int> starts = PlanWindows(300, 46, SettledOverlap(46) + lookahead).starts;
+    ASSERT_EQ(run.windows.size(), starts.size());
+    for (std::size_t k = 1; k < starts.size(); ++k) {
+      EXPECT_GE(starts[k - 1] + 46 - lookahead, starts[k] + SettledOverlap(46)) << k;
+      EXPECT_EQ(run.windows[k].settled.frame_count(), SettledOverlap(46)) << k;
+    }
+    ASSERT_EQ(run.follower.frame_count(), 300);
+    for (int t = 0; t < 300; ++t) {
+      const motion::Vec3 wanted = FakeAnswer(request.leader.at(t, 0), {}) +
+                                  FakeDraw({WindowSeed(41, WindowThatSettles(t, starts)), 1});
+      EXPECT_LT(Distance(run.follower.at(t, 0), wanted), 1e-5f) << t;
+    }
   }
 }
 
@@ -560,8 +510,56 @@ TEST(ClipSynthesis, DirectionOfTheRequestOverridesTheEstimate) {
   EXPECT_FALSE(RunAll(fake, started).windows[0].partner_direction.has_value());
 }
 
-TEST(ClipSynthesis, ModelWithoutARegressionGetsNoDirection) {
-  EXPECT_FALSE(RunAll(FakeSynthesizer(), Request(30, 15)).windows[0].partner_direction.has_value());
+TEST(LiveClipTest, ClipsOfAnyLengthAreAnsweredTogetherToTheirEnds) {
+  const FakeSynthesizer fake(SamplingDescription());
+  std::vector<LiveClip> clips;
+  for (const int frames : {1, 40, 150})
+    clips.emplace_back(fake.description(), Request(frames, 30), 2);
+  const auto followers = SynthesizeTogether(fake, &clips);
+  ASSERT_TRUE(followers.ok()) << followers.status();
+  EXPECT_EQ((*followers)[0].frame_count(), 1);
+  EXPECT_EQ((*followers)[1].frame_count(), 40);
+  EXPECT_EQ((*followers)[2].frame_count(), 150);
+}
+
+TEST(LiveClipTest, AFailureEndsAllClips) {
+  FakeSynthesizer fake(SamplingDescription());
+  fake.window_status = [](const SynthesisWindow&) { return absl::InternalError("no"); };
+  std::vector<LiveClip> clips;
+  clips.emplace_back(fake.description(), Request(40, 30), 0);
+  EXPECT_TRUE(absl::IsInternal(SynthesizeTogether(fake, &clips).status()));
+}
+
+std::vector<float> At(const LabelTrack& track, double frame) {
+  std::vector<float> weights(2, -99);
+  track.At(frame, weights.data());
+  return weights;
+}
+
+LabelTrack ThreeKeyframes() {
+  return LabelTrack(std::vector<LabelKeyframe>{{10, {1, 0}}, {20, {0, 2}}, {21, {-1, 2}}});
+}
+
+TEST(LabelTrack, OneVectorHoldsThroughout) {
+  const LabelTrack track(std::vector<float>{1, -0.5f});
+  for (double frame : {0.0, 0.25, 7.0, 1e9}) EXPECT_THAT(At(track, frame), ElementsAre(1, -0.5f));
+}
+
+TEST(LabelTrack, HitsEveryKeyframe) {
+  EXPECT_THAT(At(ThreeKeyframes(), 10), ElementsAre(1, 0));
+  EXPECT_THAT(At(ThreeKeyframes(), 20), ElementsAre(0, 2));
+  EXPECT_THAT(At(ThreeKeyframes(), 21), ElementsAre(-1, 2));
+}
+
+TEST(LabelTrack, IsLinearBetweenKeyframes) {
+  EXPECT_THAT(At(ThreeKeyframes(), 12.5), ElementsAre(0.75f, 0.5f));
+  EXPECT_THAT(At(ThreeKeyframes(), 20.5), ElementsAre(-0.5f, 2));
+}
+
+TEST(LabelTrack, HoldsBeforeTheFirstAndAfterTheLast) {
+  EXPECT_THAT(At(ThreeKeyframes(), 0), ElementsAre(1, 0));
+  EXPECT_THAT(At(ThreeKeyframes(), 9.9), ElementsAre(1, 0));
+  EXPECT_THAT(At(ThreeKeyframes(), 500), ElementsAre(-1, 2));
 }
 
 }  // namespace

@@ -112,32 +112,6 @@ TEST(EstimatePartnerDirection, TurnsWithTheLeader) {
   }
 }
 
-TEST(TurnedFeatures, AreThoseOfTheTurnedLeader) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  motion::Poses leader = test::SwayingMotion(20, 15);
-  for (int t = 0; t < leader.frame_count(); ++t) {
-    for (motion::Vec3& p : leader[t]) p.x += 0.1f * static_cast<float>(t);
-  }
-  const auto features = DirectionFeatures(skeleton, leader);
-  ASSERT_TRUE(features.has_value());
-  for (const double angle : {0.5, -2.0, 3.0}) {
-    // Hips of the first frame alone, turned towards the direction at `angle`, give its frame.
-    motion::Poses other = leader;
-    const motion::Vec3 root = leader.at(0, skeleton.root);
-    for (const int hip : {kLeftHip, kRightHip}) {
-      other.at(0, hip) = root + RotateY(leader.at(0, hip) - root, -angle);
-    }
-    auto wanted = DirectionFeatures(skeleton, other);
-    ASSERT_TRUE(wanted.has_value());
-    const std::vector<double> turned = TurnedFeatures(*features, angle);
-    for (std::size_t i = 0; i < kFeatures; ++i) {
-      // Only the hips' own features differ, because they were turned in one frame.
-      if (i / 2 == kLeftHip - 1 || i / 2 == kRightHip - 1) continue;
-      EXPECT_NEAR(turned[i], (*wanted)[i], 1e-5) << i << " at " << angle;
-    }
-  }
-}
-
 TEST(ClassShares, AreMeansOfWeightsAboveZero) {
   EXPECT_THAT(ClassShares({0.5f, -1, 1.0f, -1}, 2), Pointwise(DoubleNear(1e-6), {0.75, 0.0}));
   EXPECT_THAT(ClassShares({1, 1}, 2), Pointwise(DoubleNear(1e-6), {0.5, 0.5}));

@@ -307,21 +307,13 @@ TEST(LiveSynthesisTest, ABacklogBeyondThePlanIsAnsweredPlanByPlan) {
   EXPECT_EQ(session.follower().frame_count(), 330);
 }
 
-TEST(LiveSynthesisTest, ThePlanGoesOnFromTheFinalFrames) {
+TEST(LiveSynthesisTest, APlanGoesOnFromTheFinalFramesAndComesToRest) {
   Session session;
   session.Send(SwayingMotion(41, kRate));
-  const LiveFrames plan = session.live().Plan(12);
-  EXPECT_EQ(plan.first, 41);
-  ASSERT_EQ(plan.poses.frame_count(), 12);
-  const motion::Vec3 last = session.follower().at(40, 0);
-  EXPECT_LT(Distance(plan.poses.at(0, 0), last), 0.1f);
-}
-
-TEST(LiveSynthesisTest, APlanComesToRestWhereTheWindowEnds) {
-  Session session;
-  session.Send(SwayingMotion(41, kRate));
+  EXPECT_EQ(session.live().Plan(60).first, 41);
   const Poses plan = session.live().Plan(60).poses;
   ASSERT_EQ(plan.frame_count(), 60);
+  EXPECT_LT(Distance(plan.at(0, 0), session.follower().at(40, 0)), 0.1f);
   EXPECT_EQ(Frames(plan, 0, 5), session.live().Plan(5).poses);
   const auto step = [&plan](int frame) {
     return Distance(plan.at(frame, 0), plan.at(frame - 1, 0));
@@ -443,11 +435,39 @@ TEST(LiveSynthesisTest, LabelsChangeFromTheFrameTold) {
   EXPECT_EQ(window.labels[static_cast<std::size_t>(15 - begin) * 6], 1);
 }
 
-TEST(LiveSynthesisTest, MemoryIsBoundedByTheHistory) {
-  Session session;
-  session.Send(SwayingMotion(3000, kRate));
-  EXPECT_LE(session.windows().back().leader.frame_count(), 46);
-  EXPECT_EQ(session.live().next_follower_frame(), 3000);
+// A person who walks along x at `speed` metres per second, at 30 frames per second.
+Poses Walking(float speed) {
+  const Poses pose = SwayingMotion(1, 15);
+  Poses walking(0, 15);
+  for (int t = 0; t < 5; ++t) {
+    Poses frame = pose;
+    for (motion::Vec3& p : frame.all()) p.x += speed * static_cast<float>(t) / 30;
+    walking.Append(frame.all());
+  }
+  return walking;
+}
+
+// How far the root of a walking leader is taken to go after its last known frame.
+float WayAfter(float speed, double seconds) {
+  const Poses known = Walking(speed);
+  const Poses resting = ComeToRest(motion::SbuSkeleton(), known, 30, {seconds});
+  const int root = motion::SbuSkeleton().root;
+  return resting.at(0, root).x - known.at(4, root).x;
+}
+
+TEST(ComeToRest, ALeaderWhoStandsGoesOnStanding) { EXPECT_NEAR(WayAfter(0, 1), 0, 1e-5); }
+
+// 1.3 and 0.3 s are constants of ComeToRest.
+TEST(ComeToRest, ALeaderWhoMovesIsFasterAtFirstAndComesToRest) {
+  EXPECT_NEAR(WayAfter(1, 0.01), 0.013, 5e-4);
+  EXPECT_NEAR(WayAfter(1, 2), 1.3 * 0.3, 1e-3);
+  EXPECT_NEAR(WayAfter(1, 60), 1.3 * 0.3, 1e-3);
+}
+
+TEST(ComeToRest, OneKnownFrameIsHeld) {
+  const Poses known = SwayingMotion(1, 15);
+  const Poses resting = ComeToRest(motion::SbuSkeleton(), known, 30, {0.5});
+  for (int j = 0; j < 15; ++j) EXPECT_LT(Distance(resting.at(0, j), known.at(0, j)), 1e-4f) << j;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
-#include "model/engine/window_standardisation.h"
+#include "model/engine/standard_window.h"
 #include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
 #include "model/solver/partner.h"
@@ -81,16 +81,6 @@ float LargestDistance(const motion::Poses& a, const motion::Poses& b) {
     largest = std::max(largest, Distance(a.all()[i], b.all()[i]));
   }
   return largest;
-}
-
-TEST(NetworkSynthesizer, DescribesTheModelItWasMadeOf) {
-  ModelDescription description = FakeDescription();
-  description.name = "named";
-  description.version = 7;
-  const auto model = Model(LargerAndHigher, {}, description);
-  EXPECT_EQ(model->description().name, "named");
-  EXPECT_EQ(model->description().version, 7);
-  EXPECT_EQ(model->description().skeleton.joint_names, description.skeleton.joint_names);
 }
 
 TEST(NetworkSynthesizer, TheNetworkSeesTheStandardFrame) {
@@ -313,21 +303,6 @@ TEST(NetworkSynthesizer, WithoutFeetNoFloorIsShared) {
   EXPECT_EQ(*got, *RunOne(*Model(LargerAndHigher, kAsTheNetworkSays), window));
 }
 
-TEST(NetworkSynthesizer, WithoutHipsTheLeaderIsNotTurned) {
-  ModelDescription hipless = FakeDescription();
-  hipless.skeleton.hips.reset();
-  NetworkInput seen;
-  const auto model = Model(
-      [&](Inputs inputs) {
-        seen = inputs[0];
-        return LargerAndHigher(inputs);
-      },
-      {}, hipless);
-  const SynthesisWindow window = Window();
-  ASSERT_THAT(RunOne(*model, window), IsOk());
-  EXPECT_EQ(seen.leader.at(0, 5), window.leader.at(0, 5) - window.leader.at(0, 2));
-}
-
 TEST(NetworkSynthesizer, OnlyTheWindowThatIsNotFiniteFails) {
   const auto model = Model([](Inputs inputs) {
     Answer followers = LargerAndHigher(inputs);
@@ -384,6 +359,43 @@ TEST(NetworkSynthesizer, TheNetworkSeesAWindowCancelledMeanwhile) {
   });
   EXPECT_THAT(RunOne(*model, window),
               StatusIs(absl::StatusCode::kCancelled, HasSubstr("cancelled")));
+}
+
+// A follower that stands beside the leader, turned by some angle, with an arm that grows.
+motion::Poses Follower(int frames) {
+  motion::Poses follower = SwayingMotion(frames, 15);
+  for (int t = 0; t < frames; ++t) {
+    for (motion::Vec3& joint : follower[t]) joint += motion::Vec3{0, 0.1f, -1};
+    follower.at(t, 8).x += 0.02f * static_cast<float>(t);
+  }
+  return follower;
+}
+
+TEST(FinishMotions, PassTheStagesOfAnAnswer) {
+  ModelDescription description = FakeDescription();
+  description.samples = true;
+  const std::vector<SynthesisWindow> windows = {Window(12), Window(20)};
+  const std::vector<motion::Poses> followers = {Follower(12), Follower(20)};
+  const std::vector<WindowResult> finished = FinishMotions(description, windows, followers);
+  ASSERT_EQ(finished.size(), 2u);
+  for (std::size_t i = 0; i < finished.size(); ++i) {
+    ASSERT_THAT(finished[i], IsOk());
+    // The answer of a network that says the same.
+    const auto says = [&](Inputs) -> Answer {
+      return std::vector<motion::Poses>{
+          WindowStandardisation(description.skeleton, windows[i]).Apply(followers[i])};
+    };
+    const auto model = Model(says, {}, description);
+    const WindowResult answer = model->Synthesize({&windows[i]}).front();
+    ASSERT_THAT(answer, IsOk());
+    ASSERT_EQ(answer->all().size(), finished[i]->all().size());
+    double moved = 0;
+    for (std::size_t p = 0; p < answer->all().size(); ++p) {
+      EXPECT_LT(Distance(answer->all()[p], finished[i]->all()[p]), 1e-3f);
+      moved += double{Distance(finished[i]->all()[p], followers[i].all()[p])};
+    }
+    EXPECT_GT(moved, 0.1);  // they do change it
+  }
 }
 
 }  // namespace

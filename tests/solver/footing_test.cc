@@ -1,10 +1,9 @@
-#include "model/solver/footing.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "model/solver/feet.h"
 #include "tests/solver/noisy_person.h"
 
 namespace duet::solver {

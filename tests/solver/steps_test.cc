@@ -1,8 +1,7 @@
-#include "model/solver/steps.h"
-
 #include <cmath>
 
 #include "gtest/gtest.h"
+#include "model/solver/feet.h"
 
 namespace duet::solver {
 namespace {

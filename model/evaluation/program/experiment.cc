@@ -13,7 +13,6 @@
 #include "model/base/text.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/clips_together.h"
-#include "model/engine/live_clip.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
 namespace duet::evaluation::program {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/engine/window_seed.h"
+#include "model/engine/windows.h"
 #include "model/motion/levelling.h"
 #include "server/common/error_details.h"
 #include "server/service/refusals.h"

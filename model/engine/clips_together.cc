@@ -1,4 +1,4 @@
-#include "model/engine/live_clip.h"
+#include "model/engine/clips_together.h"
 
 #include <cstddef>
 #include <utility>

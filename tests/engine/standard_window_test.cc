@@ -1,4 +1,4 @@
-#include "model/engine/window_standardisation.h"
+#include "model/engine/standard_window.h"
 
 #include "gtest/gtest.h"
 #include "tests/support/sample_motion.h"
@@ -76,16 +76,6 @@ TEST(WindowStandardisation, EveryWayKeepsTheOriginAskedFor) {
         WindowStandardisation(motion::SbuSkeleton(), window, motion::StandardOrigin::kFirstFrame);
     ASSERT_GT(Norm(way), 0.01f);
     EXPECT_NEAR(Norm(frame.Apply(window.leader).at(3, kTorso)), Norm(way), 1e-5f);
-  }
-}
-
-TEST(WindowStandardisation, InvertsExactly) {
-  SynthesisWindow window = Window();
-  window.partner_direction = motion::Vec3{1, 0, 2};
-  const motion::Standardisation frame = WindowStandardisation(motion::SbuSkeleton(), window);
-  const motion::Poses back = frame.Invert(frame.Apply(window.leader));
-  for (std::size_t i = 0; i < back.all().size(); ++i) {
-    ExpectNear(back.all()[i], window.leader.all()[i]);
   }
 }
 
