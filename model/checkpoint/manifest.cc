@@ -33,6 +33,7 @@ constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
+constexpr char kTrunkContacts[] = "trunk_contacts";
 constexpr char kFacingClasses[] = "facing_classes";
 constexpr char kBoneRatios[] = "bone_ratios";
 constexpr char kDefaultSeeds[] = "default_seeds";
@@ -173,7 +174,6 @@ void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
   for (const char* field : kFormerFields) reader->Ignore(field);
 }
 
-// One for each bone of the skeleton. Older checkpoints have none.
 void ReadDefaultSeeds(base::ObjectReader* reader, engine::ModelDescription* model) {
   if (!reader->Has(kDefaultSeeds)) return;
   for (const json& value : reader->Array(kDefaultSeeds, engine::kMostDefaultSeeds)) {
@@ -186,6 +186,37 @@ void ReadDefaultSeeds(base::ObjectReader* reader, engine::ModelDescription* mode
   }
 }
 
+void ReadTrunkContacts(base::ObjectReader* reader, engine::ModelDescription* model) {
+  constexpr double kFarthest = 2;  // lengths of the trunk
+  if (!reader->Has(kTrunkContacts)) return;
+  const std::vector<std::string>& classes = model->classes;
+  for (const json& value : reader->Array(kTrunkContacts, kMaxMapEntries)) {
+    const std::string path = absl::StrCat(kTrunkContacts, "[", model->trunk_contacts.size(), "]");
+    if (!value.is_object()) {
+      return reader->Fail(path, absl::StrCat("expected an object, got ", base::Shown(value)));
+    }
+    base::ObjectReader fields(value, path);
+    engine::TrunkContact contact;
+    contact.interaction_class = fields.String("class", kMaxNameBytes);
+    if (std::find(classes.begin(), classes.end(), contact.interaction_class) == classes.end()) {
+      fields.Fail("class", absl::StrCat("expected one of classes, got ",
+                                        json(contact.interaction_class).dump()));
+    }
+    contact.hand = fields.String("hand", kMaxTextBytes);
+    if (model->skeleton.Find(contact.hand) < 0) {
+      fields.Fail("hand", absl::StrCat("expected one of skeleton.joint_names, got ",
+                                       json(contact.hand).dump()));
+    }
+    const auto along = [&](const char* axis) {
+      return static_cast<float>(fields.Number(axis, -kFarthest, kFarthest));
+    };
+    contact.place = {along("across"), along("up"), along("forward")};
+    reader->Update(fields.Finish());
+    model->trunk_contacts.push_back(std::move(contact));
+  }
+}
+
+// One for each bone of the skeleton. Older checkpoints have none.
 void ReadBoneRatios(base::ObjectReader* reader, engine::ModelDescription* model) {
   constexpr double kSmallest = 0.1, kLargest = 10;
   if (!reader->Has(kBoneRatios)) return;
@@ -250,6 +281,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
   ReadBoneRatios(&reader, &manifest.model);
+  if (reader.ok()) ReadTrunkContacts(&reader, &manifest.model);
   ReadDefaultSeeds(&reader, &manifest.model);
   ReadLeaders(&reader, &manifest);
   manifest.model.partner_direction = ReadDirectionRegression(
@@ -336,6 +368,13 @@ std::string SerializeManifest(const Manifest& manifest) {
   if (manifest.format_version > 1) root[kTouchingClasses] = model.touching_classes;
   for (const engine::HandContact& contact : model.hand_contacts) {
     root[kHandContacts][contact.interaction_class] = contact.metres;
+  }
+  for (const engine::TrunkContact& contact : model.trunk_contacts) {
+    root[kTrunkContacts].push_back({{"class", contact.interaction_class},
+                                    {"hand", contact.hand},
+                                    {"across", contact.place.x},
+                                    {"up", contact.place.y},
+                                    {"forward", contact.place.z}});
   }
   for (const engine::FacingClass& facing : model.facing_classes) {
     root[kFacingClasses][facing.interaction_class] = facing.degrees;

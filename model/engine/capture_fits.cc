@@ -28,11 +28,32 @@ constexpr double kLeastMet = 0.3;
 // Of the distances of hands that meet, the larger ones belong to hands that come and go: the
 // distance at which they hold each other is the lower quartile.
 constexpr double kHolds = 0.25;
+// The distance of the roots of close people, and the distances from the axis of a trunk at which a
+// hand is at the trunk: in a body it is an error of the capture. Metres.
+constexpr float kClose = 0.5f, kInBody = 0.11f, kAtTrunk = 0.25f;
+// The least share of the time of close people in which a hand is at the trunk.
+constexpr double kLeastHeld = 0.2;
 // The share of the time in which followers are not turned away farther.
 constexpr double kFacingShare = 0.9;
 // Followers who are turned away farther than that go beside their leaders, or dance.
 constexpr double kFarthestDegrees = 75;
 constexpr double kClearlyOther = 0.02;  // of the size
+
+// The median place of a hand around a trunk's axis: at its mean direction, so that hands on all
+// sides of a trunk have no place within it. Shapes: places (solver::TrunkAxes).
+Vec3 MedianPlace(const std::vector<Vec3>& places) {
+  std::vector<float> heights, radii;
+  Vec3 direction;
+  for (const Vec3 place : places) {
+    heights.push_back(place.y);
+    radii.push_back(std::hypot(place.x, place.z));
+    direction += Vec3{place.x, 0, place.z} / radii.back();
+  }
+  const float length = Norm(direction);
+  Vec3 median = length > 0 ? direction * (base::Median(radii) / length) : Vec3{};
+  median.y = base::Median(heights);
+  return median;
+}
 
 }  // namespace
 
@@ -70,6 +91,38 @@ std::optional<double> HandContactMetres(const motion::Skeleton& skeleton,
   if (all_offered < kLeastSeconds * frame_rate_hz) return std::nullopt;
   if (base::Mean(shares) < kLeastMet) return std::nullopt;
   return base::Quantile(met, kHolds);
+}
+
+std::vector<TrunkContact> TrunkContacts(const motion::Skeleton& skeleton,
+                                        const Stretches& stretches, double frame_rate_hz) {
+  const body::Body body = body::FindBody(skeleton);
+  std::vector<TrunkContact> contacts;
+  if (!skeleton.hips || !body.shoulders) return contacts;
+  for (const body::Limb& arm : body.arms) {
+    int close = 0;
+    std::vector<Vec3> places;
+    for (const Stretch& stretch : stretches) {
+      for (int t = stretch.begin; t < stretch.end; ++t) {
+        const Vec3 between =
+            stretch.leader->at(t, skeleton.root) - stretch.follower->at(t, skeleton.root);
+        if (std::hypot(between.x, between.z) > kClose) continue;
+        ++close;
+        const solver::TrunkAxes trunk = solver::TrunkAxesOf(skeleton, body, (*stretch.leader)[t]);
+        const Vec3 place = trunk.PlaceOf(stretch.follower->at(t, arm.end));
+        const float beyond = place.y - std::clamp(place.y, 0.0f, 1.0f);
+        const float around = std::hypot(place.x, place.z) * trunk.length;
+        if (around < kInBody || std::hypot(around, beyond * trunk.length) > kAtTrunk) continue;
+        places.push_back(place);
+      }
+    }
+    if (static_cast<double>(places.size()) < kLeastHeld * close ||
+        close < kLeastSeconds * frame_rate_hz) {
+      continue;
+    }
+    contacts.push_back(
+        {"", skeleton.joint_names[static_cast<std::size_t>(arm.end)], MedianPlace(places)});
+  }
+  return contacts;
 }
 
 std::optional<double> FacingDegrees(const motion::Skeleton& skeleton, const Stretches& stretches,

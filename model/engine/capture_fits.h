@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "model/engine/model_description.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -24,6 +25,12 @@ using Stretches = std::vector<Stretch>;
 // 3 s, if less than three tenths of an offered hand's time is met in the mean of the stretches, or
 // without two named arms.
 std::optional<double> HandContactMetres(const motion::Skeleton& skeleton,
+                                        const Stretches& stretches, double frame_rate_hz);
+
+// The hands of followers that rest on their partner's trunk, in stretches of one class: those that
+// are at the trunk for at least a fifth of the time in which both people are close, if that is 3 s
+// or more. The place is the median one. `interaction_class` is left empty.
+std::vector<TrunkContact> TrunkContacts(const motion::Skeleton& skeleton,
                                         const Stretches& stretches, double frame_rate_hz);
 
 // Whether followers face their leaders, in stretches of one class: how far they are turned away at

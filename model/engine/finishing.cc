@@ -16,7 +16,8 @@ namespace {
 constexpr float kTurnedRound = 180;
 
 // What one class permits at full weight.
-std::vector<solver::ContactRule> RulesOfClasses(const ModelDescription& description) {
+std::vector<solver::ContactRule> RulesOfClasses(const ModelDescription& description,
+                                                const body::Body& body) {
   std::vector<solver::ContactRule> rules(description.classes.size());
   const auto rule_of = [&](const std::string& name) -> solver::ContactRule* {
     const auto found = std::find(description.classes.begin(), description.classes.end(), name);
@@ -31,6 +32,15 @@ std::vector<solver::ContactRule> RulesOfClasses(const ModelDescription& descript
     if (rule == nullptr) continue;
     rule->hands = 1;
     rule->hands_metres = static_cast<float>(contact.metres);
+  }
+  for (const TrunkContact& contact : description.trunk_contacts) {
+    solver::ContactRule* rule = rule_of(contact.interaction_class);
+    if (rule == nullptr) continue;
+    for (std::size_t a = 0; a < std::min(body.arms.size(), rule->holds.size()); ++a) {
+      if (body.arms[a].end == description.skeleton.Find(contact.hand)) {
+        rule->holds[a] = {1, contact.place};
+      }
+    }
   }
   for (const FacingClass& facing : description.facing_classes) {
     if (solver::ContactRule* rule = rule_of(facing.interaction_class)) {
@@ -95,9 +105,9 @@ motion::Poses GivenFrames(const ModelDescription& description, const SynthesisWi
   return given;
 }
 
-solver::ContactRules ContactRulesOf(const ModelDescription& description,
+solver::ContactRules ContactRulesOf(const ModelDescription& description, const body::Body& body,
                                     absl::Span<const float> labels) {
-  const std::vector<solver::ContactRule> classes = RulesOfClasses(description);
+  const std::vector<solver::ContactRule> classes = RulesOfClasses(description, body);
   float farthest_away = classes.empty() ? kTurnedRound : 0;
   for (const solver::ContactRule& rule : classes) {
     farthest_away = std::max(farthest_away, rule.away_degrees);
@@ -111,12 +121,21 @@ solver::ContactRules ContactRulesOf(const ModelDescription& description,
       rule.overlap += weight * classes[c].overlap;
       rule.hands += weight * classes[c].hands;
       rule.hands_metres += weight * classes[c].hands * classes[c].hands_metres;
+      for (std::size_t a = 0; a < rule.holds.size(); ++a) {
+        const solver::TrunkHold& hold = classes[c].holds[a];
+        rule.holds[a].place += hold.place * (weight * hold.weight);
+        rule.holds[a].weight += weight * hold.weight;
+      }
       away += weight * classes[c].away_degrees;
       weights += weight;
     }
     if (rule.hands > 0) rule.hands_metres /= rule.hands;
     rule.overlap = std::min(1.0f, rule.overlap);
     rule.hands = std::min(1.0f, rule.hands);
+    for (solver::TrunkHold& hold : rule.holds) {
+      if (hold.weight > 0) hold.place = hold.place / hold.weight;
+      hold.weight = std::min(1.0f, hold.weight);
+    }
     // A follower of no class may do what those of any class do.
     rule.away_degrees = weights > 0 ? away / weights : farthest_away;
   }

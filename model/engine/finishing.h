@@ -4,6 +4,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
+#include "model/body/limbs.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
@@ -37,8 +38,9 @@ void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
 motion::Poses GivenFrames(const ModelDescription& description, const SynthesisWindow& window);
 
 // How the two people may touch in each frame, by the labels: a mean of what the classes permit,
-// weighted by their positive weights. Shapes: labels [frames, classes]; returns [frames].
-solver::ContactRules ContactRulesOf(const ModelDescription& description,
+// weighted by their positive weights. `body`: of the description's skeleton. Shapes: labels
+// [frames, classes]; returns [frames].
+solver::ContactRules ContactRulesOf(const ModelDescription& description, const body::Body& body,
                                     absl::Span<const float> labels);
 
 }  // namespace duet::engine

@@ -9,6 +9,7 @@
 #include "model/engine/direction_estimate.h"
 #include "model/engine/leader_statistics.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
 
 namespace duet::engine {
 
@@ -16,6 +17,14 @@ namespace duet::engine {
 struct HandContact {
   std::string interaction_class;
   double metres = 0;
+};
+
+// A class in which a hand of the follower rests on the leader's trunk, and where, in lengths of the
+// trunk (solver::TrunkAxes).
+struct TrunkContact {
+  std::string interaction_class;
+  std::string hand;  // a joint
+  motion::Vec3 place;
 };
 
 // A class in which the follower faces its leader, and how far it is turned away at most.
@@ -41,6 +50,8 @@ struct ModelDescription {
   std::vector<std::string> touching_classes;
   // The classes in which a hand that the leader offers is met.
   std::vector<HandContact> hand_contacts;
+  // The classes and hands that rest on the leader's trunk.
+  std::vector<TrunkContact> trunk_contacts;
   // The classes in which a follower that is turned away is turned back to its leader.
   std::vector<FacingClass> facing_classes;
   // The follower's limb lengths as multiples of the leader's, unless its pose is known. Empty: the

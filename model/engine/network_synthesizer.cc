@@ -210,7 +210,7 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
   solver::ContactRules RulesOf(const Task& task) const {
-    return ContactRulesOf(description_, task.mixture.labels());
+    return ContactRulesOf(description_, body_, task.mixture.labels());
   }
 
   bool IsCleanedUp(const SynthesisWindow& window) const {

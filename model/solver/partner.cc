@@ -38,8 +38,13 @@ constexpr float kHandRadius = 0.045f;
 constexpr double kAnswers = 0.55, kMeets = 0.8;
 // How far an arm reaches without effort, in its lengths.
 constexpr float kComfortable = 0.9f;
+// An embrace: the distance of the roots, and that of a hand from its place on the trunk, at which
+// the hand is brought there, and at which it is left alone. Metres.
+constexpr float kEmbraced = 0.45f, kApart = 0.7f, kHeld = 0.4f, kFree = 0.8f;
+// How far an arm reaches around a trunk, in its lengths.
+constexpr float kAround = 0.95f;
 // Corrections come and go over these times. Seconds.
-constexpr double kBodySeconds = 0.25, kTurnSeconds = 0.4, kHandSeconds = 0.1;
+constexpr double kBodySeconds = 0.25, kTurnSeconds = 0.4, kHandSeconds = 0.1, kHoldSeconds = 0.2;
 constexpr double kNear = 0.02, kIdle = 0.1;
 constexpr int kRounds = 2;
 
@@ -99,7 +104,42 @@ float SmoothStep(double t) {
   return u * u * (3 - 2 * u);
 }
 
+// 1 up to `near`, 0 from `far` on.
+float Nearness(float distance, float near, float far) {
+  return SmoothStep(double{(far - distance) / (far - near)});
+}
+
+// A vector of at most a length, nearly unchanged while it is shorter. Smooth.
+Vec3 Within(Vec3 v, float most) {
+  const float share = Norm(v) / most;
+  return v / std::pow(1 + std::pow(share, 8.0f), 0.125f);
+}
+
 }  // namespace
+
+Vec3 TrunkAxes::PlaceOf(Vec3 joint) const {
+  const Vec3 from = (joint - hips) / length;
+  return {Dot(from, across), Dot(from, up), Dot(from, forward)};
+}
+
+Vec3 TrunkAxes::WorldOf(Vec3 place) const {
+  return hips + (across * place.x + up * place.y + forward * place.z) * length;
+}
+
+TrunkAxes TrunkAxesOf(const motion::Skeleton& skeleton, const body::Body& body,
+                      absl::Span<const Vec3> pose) {
+  const auto line = [&](const motion::JointPair& pair) {
+    return Unit(JointAt(pose, pair.left) - JointAt(pose, pair.right));
+  };
+  TrunkAxes axes;
+  axes.hips = Lerp(JointAt(pose, skeleton.hips->left), JointAt(pose, skeleton.hips->right), 0.5f);
+  const Vec3 trunk = JointAt(pose, *body.chest) - axes.hips;
+  axes.length = std::max(Norm(trunk), kNoDirection);
+  axes.up = Unit(trunk);
+  axes.across = Unit(Across(line(*skeleton.hips) + line(*body.shoulders), axes.up));
+  axes.forward = Cross(axes.across, axes.up);
+  return axes;
+}
 
 std::vector<double> DegreesAway(const motion::Skeleton& skeleton, const body::Body& body,
                                 const motion::Poses& leader, const motion::Poses& follower,
@@ -267,6 +307,52 @@ void Partner::PlaceHands(const motion::Poses& leader, const ContactRules& rules,
   for (int round = 0; round < kRounds; ++round) {
     MoveHands(meetings, leader, rules, frame_rate_hz, given, follower);
   }
+  for (std::size_t arm = 0; arm < body_.arms.size(); ++arm) {
+    HoldTrunk(arm, leader, rules, frame_rate_hz, given, follower);
+  }
+}
+
+void Partner::HoldTrunk(std::size_t arm, const motion::Poses& leader, const ContactRules& rules,
+                        double frame_rate_hz, int given, motion::Poses* follower) const {
+  const body::Limb& limb = body_.arms[arm];
+  const int frames = follower->frame_count();
+  motion::Poses weights(frames, 1);  // x
+  std::vector<Vec3> places;
+  bool holds = false;
+  for (int t = 0; t < frames; ++t) {
+    const TrunkHold& hold = rules[static_cast<std::size_t>(t)].holds[arm];
+    places.push_back(TrunkAxesOf(skeleton_, body_, leader[t]).WorldOf(hold.place));
+    const float apart = Norm(Level(leader.at(t, skeleton_.root) - follower->at(t, skeleton_.root)));
+    weights.at(t, 0).x = hold.weight * Nearness(apart, kEmbraced, kApart) *
+                         Nearness(Distance(places.back(), follower->at(t, limb.end)), kHeld, kFree);
+    holds = holds || weights.at(t, 0).x > 0;
+  }
+  if (!holds) return;
+  weights = motion::GaussianFilter(weights, kHoldSeconds * frame_rate_hz);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> pulls;
+    std::vector<Vec3> wishes;
+    for (int t = 0; t < frames; ++t) {
+      const Vec3 shoulder = follower->at(t, limb.upper);
+      const float reach = kAround * body::LengthOf(limb, (*follower)[t]);
+      const Vec3 place = shoulder + Within(places[static_cast<std::size_t>(t)] - shoulder, reach);
+      const float weight = weights.at(t, 0).x, pull = weight + static_cast<float>(kIdle);
+      pulls.push_back(double{pull});
+      wishes.push_back((place - follower->at(t, limb.end)) * (weight / pull));
+    }
+    const std::vector<Vec3> ways =
+        SmoothShift({frame_rate_hz, kHoldSeconds, kNear, given}, pulls, wishes);
+    for (int t = given; t < frames; ++t) {
+      MoveHand(limb, ways[static_cast<std::size_t>(t)], (*follower)[t]);
+    }
+  }
+}
+
+// An elbow without a side of its own points down and back.
+void Partner::MoveHand(const body::Limb& arm, Vec3 way, absl::Span<Vec3> pose) const {
+  const Vec3 bend =
+      body::BendOf(arm, pose) - FacingOf(skeleton_, body_, pose) * 0.02f - kUp * 0.02f;
+  body::ReachBent(arm, JointAt(pose, arm.end) + way, bend, pose);
 }
 
 void Partner::MoveHands(const std::vector<Meeting>& meetings, const motion::Poses& leader,
@@ -300,10 +386,7 @@ void Partner::MoveHands(const std::vector<Meeting>& meetings, const motion::Pose
     const std::vector<Vec3> ways =
         SmoothShift({frame_rate_hz, kHandSeconds, kNear, given}, WeightsOf(wishes), wishes);
     for (int t = given; t < follower->frame_count(); ++t) {
-      const absl::Span<Vec3> pose = (*follower)[t];
-      const Vec3 bend =
-          body::BendOf(arm, pose) - FacingOf(skeleton_, body_, pose) * 0.02f - kUp * 0.02f;
-      body::ReachBent(arm, JointAt(pose, arm.end) + ways[static_cast<std::size_t>(t)], bend, pose);
+      MoveHand(arm, ways[static_cast<std::size_t>(t)], (*follower)[t]);
     }
   }
 }

@@ -2,13 +2,36 @@
 #define DUET_MODEL_SOLVER_PARTNER_H_
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "model/body/limbs.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
 
 namespace duet::solver {
+
+// Axes of a trunk, by hips and shoulders together. World metres.
+struct TrunkAxes {
+  motion::Vec3 hips;                 // the middle of the hips: the origin
+  motion::Vec3 across, up, forward;  // of length 1: to the left, to the chest, to the front
+  float length = 0;                  // from the hips to the chest
+
+  // Places in the axes, in lengths of the trunk, from and to the world.
+  motion::Vec3 PlaceOf(motion::Vec3 joint) const;
+  motion::Vec3 WorldOf(motion::Vec3 place) const;
+};
+// Requires hips, two shoulders and a chest. Shapes: pose [joints].
+TrunkAxes TrunkAxesOf(const motion::Skeleton& skeleton, const body::Body& body,
+                      absl::Span<const motion::Vec3> pose);
+
+// A hand that rests on the partner's trunk: how much, 0 to 1, and where (TrunkAxes).
+struct TrunkHold {
+  float weight = 0;
+  motion::Vec3 place;
+};
 
 // How a class lets two people touch in one frame. Learned from captures; 0 where people do not.
 struct ContactRule {
@@ -16,6 +39,7 @@ struct ContactRule {
   float hands = 0;           // how much a hand that the leader offers is met, 0 to 1
   float hands_metres = 0;    // the distance of hands that meet
   float away_degrees = 180;  // how far the follower may be turned away
+  std::array<TrunkHold, 2> holds = {};  // by the follower's hands, in the order of body::Body::arms
 };
 using ContactRules = std::vector<ContactRule>;  // [frames]
 
@@ -31,7 +55,7 @@ class Partner {
   void PlaceBody(const motion::Poses& leader, const ContactRules& rules, double frame_rate_hz,
                  int given, motion::Poses* follower) const;
 
-  // Moves the follower's hands: to those that they meet, and out of the leader.
+  // Moves the follower's hands: to those that they meet, out of the leader, and around the leader.
   void PlaceHands(const motion::Poses& leader, const ContactRules& rules, double frame_rate_hz,
                   int given, motion::Poses* follower) const;
 
@@ -51,6 +75,11 @@ class Partner {
   void MoveHands(const std::vector<Meeting>& meetings, const motion::Poses& leader,
                  const ContactRules& rules, double frame_rate_hz, int given,
                  motion::Poses* follower) const;
+  // Brings a hand to where it rests on the leader's trunk, where both people are close and the hand
+  // is already near. Weights and reach are smooth: rounding must not become a motion.
+  void HoldTrunk(std::size_t arm, const motion::Poses& leader, const ContactRules& rules,
+                 double frame_rate_hz, int given, motion::Poses* follower) const;
+  void MoveHand(const body::Limb& arm, motion::Vec3 way, absl::Span<motion::Vec3> pose) const;
   // The way of the hand in a frame until it meets the leader's.
   motion::Vec3 WayToMeet(const Meeting& meeting, const motion::Poses& leader, float metres, int t,
                          const motion::Poses& follower) const;

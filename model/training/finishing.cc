@@ -85,6 +85,10 @@ void MeasurePairs(const dataset::Dataset& whole, const std::vector<int>& takes,
     if (const auto metres = engine::HandContactMetres(skeleton, windows, rate)) {
       model->hand_contacts.push_back({name, *metres});
     }
+    for (engine::TrunkContact& contact : engine::TrunkContacts(skeleton, windows, rate)) {
+      contact.interaction_class = name;
+      model->trunk_contacts.push_back(std::move(contact));
+    }
     if (const auto degrees = engine::FacingDegrees(skeleton, StretchesOf(whole, takes, c), rate)) {
       model->facing_classes.push_back({name, std::round(*degrees)});
     }

@@ -218,10 +218,12 @@ absl::Status Write(const RunPlan& plan, checkpoint::Checkpoint checkpoint) {
   return checkpoint::WriteCheckpoint(CheckpointFolder(plan), std::move(checkpoint));
 }
 
-// Writes the checkpoint `from` with a new critic, under the name of the plan.
+// Writes the checkpoint `from` with a new critic, and with the contacts that the data shows, under
+// the name of the plan.
 absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& dataset,
-                             const std::vector<int>& train, checkpoint::Checkpoint from,
-                             std::ostream* progress) {
+                             const std::vector<int>& train,
+                             std::vector<engine::TrunkContact> trunk_contacts,
+                             checkpoint::Checkpoint from, std::ostream* progress) {
   const FlowTraining* flow = FlowIn(plan.options);
   if (plan.from.empty() || !from.manifest.model.samples || flow == nullptr ||
       flow->critic.steps == 0) {
@@ -236,6 +238,7 @@ absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& datase
   manifest.model.name = plan.model_name;
   manifest.model.version = plan.model_version;
   if (!plan.description.empty()) manifest.model.description = plan.description;
+  manifest.model.trunk_contacts = std::move(trunk_contacts);
   DUET_RETURN_IF_ERROR(AddCritic(plan, dataset, train, progress, &from));
   return Write(plan, std::move(from));
 }
@@ -326,7 +329,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   Measure(whole, takes, dataset, train, plan.options, &manifest.model);
   DUET_TRY(checkpoint::Checkpoint from, ReadFrom(plan, &manifest));
   if (plan.critic_only) {
-    return TrainCriticOnly(plan, dataset, train, std::move(from), progress);
+    return TrainCriticOnly(plan, dataset, train, manifest.model.trunk_contacts, std::move(from),
+                           progress);
   }
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan.options, manifest, dataset, train, validation);

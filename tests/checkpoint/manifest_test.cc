@@ -403,6 +403,8 @@ Manifest ManifestWithHabits() {
   Manifest manifest = CompleteManifest();  // of a model with the classes kick and hug
   manifest.model.touching_classes = {"kick"};
   manifest.model.hand_contacts = {{"hug", 0.25}};
+  manifest.model.trunk_contacts = {
+      {"hug", manifest.model.skeleton.joint_names[0], {0.5f, 1, -0.25f}}};
   manifest.model.facing_classes = {{"hug", 64}};
   manifest.model.bone_ratios.assign(manifest.model.skeleton.bones.size(), 0.9);
   return manifest;
@@ -415,6 +417,10 @@ TEST(HabitsInManifest, RoundTrip) {
   ASSERT_THAT(got.hand_contacts, SizeIs(1));
   EXPECT_EQ(got.hand_contacts[0].interaction_class, "hug");
   EXPECT_EQ(got.hand_contacts[0].metres, 0.25);
+  ASSERT_THAT(got.trunk_contacts, SizeIs(1));
+  EXPECT_EQ(got.trunk_contacts[0].interaction_class, "hug");
+  EXPECT_EQ(got.trunk_contacts[0].hand, wanted.skeleton.joint_names[0]);
+  EXPECT_EQ(got.trunk_contacts[0].place, (motion::Vec3{0.5f, 1, -0.25f}));
   ASSERT_THAT(got.facing_classes, SizeIs(1));
   EXPECT_EQ(got.facing_classes[0].interaction_class, "hug");
   EXPECT_EQ(got.facing_classes[0].degrees, 64);
@@ -442,6 +448,11 @@ TEST(HabitsInManifest, RejectsByName) {
        {"/touching_classes", R"(["hug","hug"])", "repeated"},
        {"/hand_contacts", R"({"bow": 0.1})", "hand_contacts: expected one of classes, got \"bow\""},
        {"/hand_contacts", R"({"hug": 3})", "hand_contacts.hug"},
+       {"/trunk_contacts/0", "1", "trunk_contacts[0]: expected an object, got 1"},
+       {"/trunk_contacts/0/class", R"("bow")", "trunk_contacts[0].class: expected one of classes"},
+       {"/trunk_contacts/0/hand", R"("tail")",
+        "trunk_contacts[0].hand: expected one of skeleton.joint_names, got \"tail\""},
+       {"/trunk_contacts/0/up", "3", "trunk_contacts[0].up"},
        {"/facing_classes", R"({"walk": 60})",
         "facing_classes: expected one of classes, got \"walk\""},
        {"/facing_classes", R"({"hug": 181})", "facing_classes.hug"},

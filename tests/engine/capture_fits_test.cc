@@ -2,6 +2,7 @@
 
 #include "gmock/gmock.h"
 #include "model/base/angle.h"
+#include "model/solver/partner.h"
 #include "tests/support/bodies.h"
 
 namespace duet::engine {
@@ -16,7 +17,7 @@ using testing::Each;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr int kTorso = 2, kRightElbow = 7, kRightHand = 8;
+constexpr int kTorso = 2, kLeftHand = 5, kRightElbow = 7, kRightHand = 8;
 
 struct Pair {
   Poses leader, follower;
@@ -117,6 +118,44 @@ TEST(HandContactMetres, CountsEveryStretchTheSame) {
   Stretches stretches = {meets.First(kFrames)};
   for (int t = 0; t < 6; t += 2) stretches.push_back({&misses.leader, &misses.follower, t, t + 2});
   EXPECT_FALSE(Metres(stretches).has_value());
+}
+
+// Two people face to face at `metres`; the follower's left hand is at a place of the leader's
+// trunk.
+Pair Embracing(float metres, Vec3 place) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const body::Body body = body::FindBody(skeleton);
+  Pair pair = {Puppet(),
+               test::Moved(test::Changed(Puppet(),
+                                         [](int, Vec3 joint) { return RotateY(joint, base::kPi); }),
+                           {0, 0, metres})};
+  for (int t = 0; t < kFrames; ++t) {
+    pair.follower.at(t, kLeftHand) =
+        solver::TrunkAxesOf(skeleton, body, pair.leader[t]).WorldOf(place);
+  }
+  return pair;
+}
+
+std::vector<TrunkContact> Held(const std::vector<Pair>& pairs) {
+  return TrunkContacts(motion::SbuSkeleton(), Whole(pairs), kRate);
+}
+
+TEST(TrunkContacts, AreTheHandsThatRestOnAPartnerAndWhere) {
+  const std::vector<TrunkContact> held =
+      Held({Embracing(0.3f, {-0.3f, 0.5f, -0.2f}), Embracing(0.3f, {-0.3f, 0.7f, -0.2f})});
+  ASSERT_THAT(held, SizeIs(1));
+  EXPECT_EQ(held[0].hand, "left_hand");
+  EXPECT_LT(Distance(held[0].place, {-0.3f, 0.7f, -0.2f}), 1e-4f);
+}
+
+TEST(TrunkContacts, NeedPeopleWhoAreCloseAndHandsAtTheTrunk) {
+  const Vec3 place = {-0.3f, 0.5f, -0.2f}, inside = {0.05f, 0.5f, 0}, away = {-0.8f, 0.5f, 0};
+  EXPECT_THAT(Held({Embracing(0.6f, place)}), IsEmpty());
+  EXPECT_THAT(Held({Embracing(0.3f, inside)}), IsEmpty());
+  EXPECT_THAT(Held({Embracing(0.3f, away)}), IsEmpty());
+  std::vector<Pair> seldom(9, Embracing(0.3f, away));
+  seldom.push_back(Embracing(0.3f, place));
+  EXPECT_THAT(Held(seldom), IsEmpty());
 }
 
 }  // namespace

@@ -219,7 +219,7 @@ TEST(ContactRules, BodiesTouchAsFarAsATouchingClasssLabelGoes) {
   description.touching_classes = {"hug"};
   const std::vector<float> labels = {0.9f, -0.75f, 0.9f, 0.25f, 0.9f, 1.25f};
   const auto overlap = [&](std::size_t t) {
-    return ContactRulesOf(description, labels)[t].overlap;
+    return ContactRulesOf(description, body::FindBody(description.skeleton), labels)[t].overlap;
   };
   EXPECT_EQ(overlap(0), 0);
   EXPECT_EQ(overlap(1), 0.25f);
@@ -232,14 +232,20 @@ TEST(ContactRules, AreMeansByTheWeightsOfTheClasses) {
   ModelDescription description = FakeDescription();
   description.classes = {"shake", "dance", "walk"};
   description.hand_contacts = {{"shake", 0.2}, {"dance", 0.4}};
+  description.trunk_contacts = {{"shake", "left_hand", {1, 1, 0}},
+                                {"dance", "left_hand", {0, 1, 1}}};
   description.facing_classes = {{"shake", 30}, {"walk", 90}};
   const solver::ContactRules rules =
-      ContactRulesOf(description, std::vector<float>{1, 0, 0, 0.25f, 0.75f, 0, 0, 0, -1});
+      ContactRulesOf(description, body::FindBody(description.skeleton),
+                     std::vector<float>{1, 0, 0, 0.25f, 0.75f, 0, 0, 0, -1});
   EXPECT_FLOAT_EQ(rules[0].hands_metres, 0.2f);
   EXPECT_FLOAT_EQ(rules[0].away_degrees, 30);
   EXPECT_FLOAT_EQ(rules[1].hands, 1);
   EXPECT_FLOAT_EQ(rules[1].hands_metres, 0.35f);
   EXPECT_FLOAT_EQ(rules[1].away_degrees, 0.25f * 30 + 0.75f * 180);
+  EXPECT_FLOAT_EQ(rules[1].holds[0].weight, 1);
+  EXPECT_LT(Distance(rules[1].holds[0].place, {0.25f, 1, 0.75f}), 1e-6f);
+  EXPECT_EQ(rules[1].holds[1].weight, 0);
   EXPECT_EQ(rules[2].hands, 0);
   EXPECT_EQ(rules[2].away_degrees, 180) << "nothing is asked for";
 }

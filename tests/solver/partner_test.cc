@@ -1,6 +1,7 @@
 #include "model/solver/partner.h"
 
 #include <cmath>
+#include <cstddef>
 
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
@@ -92,6 +93,51 @@ TEST(PartnerTest, MeetsAHandThatIsOffered) {
   };
   EXPECT_LT(apart(1), 0.15f);
   EXPECT_GT(apart(0), 0.4f);
+}
+
+// Two people in an embrace, whose hands hang down in front of each other.
+struct Embrace {
+  Fixture f;
+  motion::Poses leader = Puppet(), before;
+  ContactRule rule;
+
+  explicit Embrace(double metres) : before(Opposite(metres)) {
+    rule.overlap = 1;
+    rule.holds = {{{1, {-0.4f, 0.6f, -0.2f}}, {1, {0.3f, 0.8f, -0.3f}}}};
+    for (int t = 0; t < kFrames; ++t) {
+      for (const body::Limb& arm : f.body.arms) {
+        body::Reach(arm, before.at(t, arm.upper) + Vec3{0, -0.2f, -0.3f}, {0, 0, 1}, before[t]);
+      }
+    }
+  }
+  motion::Poses Held(motion::Poses follower) const {
+    f.partner.PlaceHands(leader, Rules(rule), kRate, 0, &follower);
+    return follower;
+  }
+};
+
+TEST(PartnerTest, HandsHoldTheTrunkOfACloseLeader) {
+  const Embrace close(0.3), apart(0.8);
+  const motion::Poses follower = close.Held(close.before);
+  EXPECT_LT(test::LargestLengthChange(follower, close.before), 1e-4f);
+  const TrunkAxes trunk = TrunkAxesOf(close.f.skeleton, close.f.body, close.leader[25]);
+  for (std::size_t arm = 0; arm < 2; ++arm) {
+    const Vec3 hand = follower.at(25, close.f.body.arms[arm].end);
+    EXPECT_LT(Distance(hand, trunk.WorldOf(close.rule.holds[arm].place)), 0.06f) << arm;
+    EXPECT_LT(trunk.PlaceOf(hand).z, 0) << arm << " is not behind the leader";
+  }
+  EXPECT_EQ(apart.Held(apart.before).all(), apart.before.all());
+}
+
+// A client's joints are rounded on the way: they must not move the hands.
+TEST(PartnerTest, RoundingMovesHandsThatHoldNoFarther) {
+  for (double metres = 0.2; metres < 0.62; metres += 0.02) {
+    const Embrace embrace(metres);
+    motion::Poses rounded = embrace.before;
+    for (Vec3& joint : rounded.all()) joint += Vec3{1e-5f, -1e-5f, 1e-5f};
+    EXPECT_LT(test::LargestDistance(embrace.Held(embrace.before), embrace.Held(rounded)), 2e-4f)
+        << metres;
+  }
 }
 
 TEST(PartnerTest, LeavesTheGivenFrames) {
