@@ -39,7 +39,7 @@ struct Manifest {
   // Body parts of the skeleton, in the order of the slices of the paper's generator.
   std::vector<motion::BodyPart> parts;
   Architecture architecture;
-  // The network's coordinates (model/engine/standard_window.h): metres, y up, one yaw for
+  // The network's coordinates (model/engine/windows.h): metres, y up, one yaw for
   // the window. The origin is the leader's root: in every frame, as in the paper, or in the first
   // frame of the window.
   motion::StandardOrigin standardisation = motion::StandardOrigin::kEveryFrame;

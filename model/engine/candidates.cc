@@ -15,7 +15,7 @@ namespace {
 
 using motion::Poses;
 
-// What one unit of each fault costs, compared with one metre between a sample and the others.
+// What one unit of each fault costs.
 constexpr double kTwistCost = 1.0;    // a frame twisted by twice the threshold
 constexpr double kOverlapCost = 4.0;  // a frame in which heads or trunks overlap by 10 cm
 constexpr double kSkateCost = 0.1;    // a frame in which the slower ankle moves at 1 m/s
@@ -24,31 +24,6 @@ constexpr double kPinCost = 2.0;      // a pin that is one metre away, on averag
 constexpr double kCriticCost = 0.1;   // odds of being captured that are lower by the factor e
 // Degrees between shoulders and hips from which on a twist counts.
 constexpr double kFreeTwistDegrees = 30;
-
-// The mean distance of the joints of two samples after the settled frames.
-double Apart(const Poses& a, const Poses& b, int settled) {
-  const std::size_t first =
-      static_cast<std::size_t>(settled) * static_cast<std::size_t>(a.joint_count());
-  double sum = 0;
-  for (std::size_t i = first; i < a.all().size(); ++i) {
-    sum += double{Distance(a.all()[i], b.all()[i])};
-  }
-  return sum / static_cast<double>(std::max<std::size_t>(1, a.all().size() - first));
-}
-
-// The mean distance of each sample from all others. Shapes: returns [followers].
-std::vector<double> FromTheOthers(const std::vector<Poses>& followers, int settled) {
-  std::vector<double> sums(followers.size());
-  for (std::size_t a = 0; a < followers.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      const double apart = Apart(followers[a], followers[b], settled);
-      sums[a] += apart;
-      sums[b] += apart;
-    }
-  }
-  for (double& sum : sums) sum /= std::max(1.0, static_cast<double>(followers.size()) - 1);
-  return sums;
-}
 
 double FaultOf(const body::FrameMeasures& frame) {
   const double twist = std::max(0.0, frame.twist_degrees - kFreeTwistDegrees) / body::kTwistDegrees;
@@ -70,10 +45,6 @@ int EvaluationCount(const ModelDescription& model, const Sampling& sampling) {
 uint64_t CandidateSeed(uint64_t seed, int n) {
   // Windows count upwards, so candidates count downwards from the same stream.
   return WindowSeed(seed, -n);
-}
-
-float CandidateVariety(float variety, int candidates) {
-  return candidates > 1 && variety < 1 ? (1 + variety) / 2 : variety;
 }
 
 CandidateJudge::CandidateJudge(const motion::Skeleton& skeleton, std::optional<Critic> critic)
@@ -106,14 +77,12 @@ double CandidateJudge::HandsApart(const Poses& leader, const Poses& follower, in
 }
 
 int CandidateJudge::Best(const Poses& leader, const std::vector<Poses>& followers, int settled,
-                         double frame_rate_hz, float variety, const motion::Pins& pins,
+                         double frame_rate_hz, const motion::Pins& pins,
                          const solver::ContactRules& rules, absl::Span<const float> labels) const {
   if (followers.size() == 1) return 0;
-  const double typical = std::max(0.0, 1 - double{variety});
   std::vector<double> costs(followers.size());
-  if (typical > 0) costs = FromTheOthers(followers, settled);
   for (std::size_t i = 0; i < followers.size(); ++i) {
-    costs[i] = typical * costs[i] + Faults(leader, followers[i], settled, frame_rate_hz);
+    costs[i] = Faults(leader, followers[i], settled, frame_rate_hz);
     if (!rules.empty()) {
       costs[i] += kHandCost * HandsApart(leader, followers[i], settled, rules);
     }

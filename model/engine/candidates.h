@@ -28,16 +28,11 @@ int EvaluationCount(const ModelDescription& model, const Sampling& sampling);
 // answer without candidates.
 uint64_t CandidateSeed(uint64_t seed, int n);
 
-// The variety with which the candidates of a window are drawn. Below 1, several candidates are
-// drawn with more variety than asked for, and the most typical of them is chosen: the sample
-// without any noise is no typical motion.
-float CandidateVariety(float variety, int candidates);
-
 // Chooses among the samples of a window by what a viewer would notice (model/body/grade.h), by how
-// far hands that meet are apart, by how far the samples are from the window's pins, by how much a
-// critic takes them for captured and, for a variety below 1, by how far they are from each other.
+// far hands that meet are apart, by how far the samples are from the window's pins, and by how much
+// a critic takes them for captured.
 //
-// Cost:    linear in the frames, quadratic in the candidates.
+// Cost:    linear in the frames and in the candidates.
 // Threads: const methods are safe to call concurrently.
 class CandidateJudge {
  public:
@@ -47,12 +42,11 @@ class CandidateJudge {
                           std::optional<Critic> critic = std::nullopt);
 
   // The index of the best follower; the first of several. `settled`: first frames that all have in
-  // common. `variety`: of the request. `pins`: of the window, which the followers do not honour
-  // yet. `rules`: where hands are to meet; may be empty. `labels`: what the critic sees of the
-  // labels. Shapes: every follower is like the leader; rules [frames]; labels [frames, classes].
-  // Requires at least one.
+  // common. `pins`: of the window, which the followers do not honour yet. `rules`: where hands are
+  // to meet; may be empty. `labels`: what the critic sees of the labels. Shapes: every follower is
+  // like the leader; rules [frames]; labels [frames, classes]. Requires at least one.
   int Best(const motion::Poses& leader, const std::vector<motion::Poses>& followers, int settled,
-           double frame_rate_hz, float variety, const motion::Pins& pins = {},
+           double frame_rate_hz, const motion::Pins& pins = {},
            const solver::ContactRules& rules = {}, absl::Span<const float> labels = {}) const;
 
  private:

@@ -17,8 +17,7 @@ namespace {
 
 using motion::Vec3;
 
-// Shorter times show nothing.
-constexpr double kLeastSeconds = 3;
+constexpr double kLeastSeconds = 3;  // shorter times show nothing
 // Hands at this distance meet, metres.
 constexpr double kMeets = 0.25;
 // The least share of an offered hand's time that is met. The solver meets every offered hand of the
@@ -68,19 +67,16 @@ std::optional<double> HandContactMetres(const motion::Skeleton& skeleton,
     int offered = 0;
     const std::size_t met_before = met.size();
     for (int t = stretch.begin; t < stretch.end; ++t) {
-      const absl::Span<const Vec3> leader = (*stretch.leader)[t], follower = (*stretch.follower)[t];
-      const auto joint_of = [](absl::Span<const Vec3> pose, int joint) {
-        return pose[static_cast<std::size_t>(joint)];
-      };
+      const motion::Poses &leader = *stretch.leader, &follower = *stretch.follower;
       for (const body::Limb& arm : body.arms) {
-        if (body::ReachTowards(arm, skeleton.root, leader, joint_of(follower, skeleton.root)) <
+        if (body::ReachTowards(arm, skeleton.root, leader[t], follower.at(t, skeleton.root)) <
             body::kOffersReach) {
           continue;
         }
         ++offered;
-        const Vec3 hand = joint_of(leader, arm.end);
-        const float distance = std::min(Distance(hand, joint_of(follower, body.arms[0].end)),
-                                        Distance(hand, joint_of(follower, body.arms[1].end)));
+        const Vec3 hand = leader.at(t, arm.end);
+        const float distance = std::min(Distance(hand, follower.at(t, body.arms[0].end)),
+                                        Distance(hand, follower.at(t, body.arms[1].end)));
         if (distance < kMeets) met.push_back(double{distance});
       }
     }

@@ -27,16 +27,6 @@ constexpr double kEpsilon = 1e-6;
 
 }  // namespace
 
-std::unique_ptr<ClipGrader> ClipGrader::Create(const motion::Skeleton& skeleton,
-                                               double frame_rate_hz) {
-  body::Body body = body::FindBody(skeleton);
-  if (!body::PairMeter::CanMeasure(skeleton, body)) return nullptr;
-  return std::unique_ptr<ClipGrader>(new ClipGrader(skeleton, std::move(body), frame_rate_hz));
-}
-
-ClipGrader::ClipGrader(const motion::Skeleton& skeleton, body::Body body, double frame_rate_hz)
-    : skeleton_(skeleton), body_(std::move(body)), meter_(skeleton_, body_, frame_rate_hz) {}
-
 void ClipGrader::Add(const motion::Poses& leader, const motion::Poses& follower) {
   for (int t = 0; t < follower.frame_count(); ++t) {
     sum_.Add(meter_.Add(leader[frames_++], follower[t]));
@@ -56,7 +46,9 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
       body_(body::FindBody(model_.skeleton)),
       cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       pin_distances_(request_.pins.size()),
-      grader_(ClipGrader::Create(model_.skeleton, request_.frame_rate_hz)) {}
+      grader_(body::PairMeter::CanMeasure(model_.skeleton, body_)
+                  ? std::make_unique<ClipGrader>(model_.skeleton, body_, request_.frame_rate_hz)
+                  : nullptr) {}
 
 SynthesisWindow ClipSynthesis::NextWindow() const {
   const std::size_t classes = model_.classes.size();

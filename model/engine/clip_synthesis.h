@@ -41,10 +41,9 @@ struct ClipRequest {
 // Threads: not safe to call concurrently.
 class ClipGrader {
  public:
-  // Null if the skeleton lacks joints that the grade needs (body::PairMeter). Requires a skeleton
-  // that Validate accepts.
-  static std::unique_ptr<ClipGrader> Create(const motion::Skeleton& skeleton, double frame_rate_hz);
-
+  // Requires body::PairMeter::CanMeasure.
+  ClipGrader(const motion::Skeleton& skeleton, const body::Body& body, double frame_rate_hz)
+      : skeleton_(skeleton), body_(body), meter_(skeleton_, body_, frame_rate_hz) {}
   // The meter refers to the members before it.
   ClipGrader(const ClipGrader&) = delete;
   ClipGrader& operator=(const ClipGrader&) = delete;
@@ -56,8 +55,6 @@ class ClipGrader {
   body::Grade Get() const { return sum_.Get(); }
 
  private:
-  ClipGrader(const motion::Skeleton& skeleton, body::Body body, double frame_rate_hz);
-
   const motion::Skeleton skeleton_;
   const body::Body body_;
   body::PairMeter meter_;

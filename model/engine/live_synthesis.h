@@ -7,7 +7,6 @@
 #include "absl/types/span.h"
 #include "model/body/limbs.h"
 #include "model/engine/label_track.h"
-#include "model/engine/live_timing.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
@@ -16,6 +15,43 @@
 #include "model/solver/body_model.h"
 
 namespace duet::engine {
+
+// When a live session evaluates the network, and what an evaluation reads. A pure function of the
+// model, the caller's frame rate and the delay, so that a resumed session evaluates at the same
+// frames.
+class LiveTiming {
+ public:
+  // Requires a positive rate.
+  LiveTiming(const ModelDescription& model, double frame_rate_hz, int delay_frames);
+
+  double ToModelFrame(int frame) const { return frame * model_frames_per_frame_; }
+  double ToCallerFrame(int model_frame) const { return model_frame / model_frames_per_frame_; }
+  // The last model frame that is not after a frame of the caller.
+  int ModelFrameAt(int frame) const;
+
+  int delay_frames() const { return delay_frames_; }
+  // Model frames in one window: of the follower's past that it continues from, of what was sent and
+  // is made anew, and of the future.
+  int past_frames() const { return past_; }
+  int remade_frames() const { return remade_; }
+  int future_frames() const { return future_; }
+  // Number of the caller's last frames that an evaluation may read, of both motions.
+  int history_frames() const;
+
+  // Whether the network is evaluated when leader frame `frame` has arrived. The first frame that
+  // has an answer (delay_frames) is such a frame.
+  bool IsEvaluation(int frame) const;
+  // The first evaluation after, and the last one not after, a leader frame. Requires the latter to
+  // be at least delay_frames.
+  int EvaluationAfter(int frame) const;
+  int EvaluationNotAfter(int frame) const;
+
+ private:
+  int delay_frames_;
+  double model_frames_per_frame_;  // model rate / caller's rate
+  int model_frames_between_;       // evaluations
+  int past_, remade_, future_;
+};
 
 // Returns what a leader is taken to do after its last known frame, while the true motion is still
 // unknown: it comes to rest, with constant limb lengths. Live synthesis and its training share it.

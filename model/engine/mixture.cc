@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "model/solver/geometry.h"
+
 namespace duet::engine {
 namespace {
 
@@ -40,11 +42,6 @@ bool Any(const Labels& labels) {
   return std::any_of(labels.begin(), labels.end(), [](float weight) { return weight > 0; });
 }
 
-float Smoothstep(float low, float high, float value) {
-  const float x = std::clamp((value - low) / (high - low), 0.0f, 1.0f);
-  return x * x * (3 - 2 * x);
-}
-
 // How far the leader's hands and feet are from its root towards the partner, the furthest of them.
 std::vector<float> Reaches(const body::Body& body, int root, const Poses& leader) {
   std::vector<float> reaches(static_cast<std::size_t>(leader.frame_count()), 0.0f);
@@ -65,7 +62,7 @@ std::vector<float> PhaseOf(const body::Body& body, int root, const Poses& leader
                            double frame_rate_hz, float* clear) {
   std::vector<float> phase = Reaches(body, root, leader);
   const auto [least, most] = std::minmax_element(phase.begin(), phase.end());
-  *clear = Smoothstep(kNoReach, kFullReach, *most - *least);
+  *clear = solver::SmoothStep((*most - *least - kNoReach) / (kFullReach - kNoReach));
   const double moment = static_cast<double>(most - phase.begin());
   for (std::size_t t = 0; t < phase.size(); ++t) {
     const double since = (static_cast<double>(t) - moment) / frame_rate_hz;

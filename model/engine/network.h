@@ -14,7 +14,7 @@
 namespace duet::engine {
 
 // The input of a network: a window in the standard coordinates of its leader
-// (standard_window.h), metres.
+// (windows.h), metres.
 struct NetworkInput {
   motion::Poses leader;       // [frames, joints]
   int hidden_frames = 0;      // see SynthesisWindow

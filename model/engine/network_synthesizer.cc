@@ -5,17 +5,20 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
+#include <numeric>
+#include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "model/engine/candidates.h"
 #include "model/engine/clip_synthesis.h"
-#include "model/engine/finishing.h"
 #include "model/engine/leader_statistics.h"
 #include "model/engine/mixture.h"
-#include "model/engine/standard_window.h"
 #include "model/engine/windows.h"
+#include "model/motion/feet.h"
+#include "model/motion/limb_lengths.h"
 #include "model/motion/resample.h"
+#include "model/solver/body_model.h"
 #include "model/solver/follower.h"
 
 namespace duet::engine {
@@ -24,14 +27,96 @@ namespace {
 // Windows that are measured need share no more than the frame they meet in.
 constexpr int kOverlap = 1;
 
-motion::Poses LeaderWindow(const ModelDescription& model, const ClipRequest& request, int start,
-                           int length) {
-  motion::Poses window(length, model.skeleton.joint_count());
-  for (int t = 0; t < length; ++t) {
-    SampleLinear(request.leader, (start + t) * request.frame_rate_hz / model.frame_rate_hz,
-                 window[t]);
+// How far a follower may be turned away in a class in which it does not face its leader, degrees.
+constexpr float kTurnedRound = 180;
+
+// What one class permits at full weight.
+std::vector<solver::ContactRule> RulesOfClasses(const ModelDescription& description,
+                                                const body::Body& body) {
+  std::vector<solver::ContactRule> rules(description.classes.size());
+  solver::ContactRule unknown;
+  const auto rule_of = [&](const std::string& name) -> solver::ContactRule& {
+    const auto found = std::find(description.classes.begin(), description.classes.end(), name);
+    if (found == description.classes.end()) return unknown;
+    return rules[static_cast<std::size_t>(found - description.classes.begin())];
+  };
+  for (const std::string& name : description.touching_classes) rule_of(name).overlap = 1;
+  for (const HandContact& contact : description.hand_contacts) {
+    rule_of(contact.interaction_class).hands = 1;
+    rule_of(contact.interaction_class).hands_metres = static_cast<float>(contact.metres);
   }
-  return window;
+  for (const TrunkContact& contact : description.trunk_contacts) {
+    solver::ContactRule& rule = rule_of(contact.interaction_class);
+    for (std::size_t a = 0; a < std::min(body.arms.size(), rule.holds.size()); ++a) {
+      const bool is_hand = body.arms[a].end == description.skeleton.Find(contact.hand);
+      if (is_hand) rule.holds[a] = {1, contact.place};
+    }
+  }
+  for (const FacingClass& facing : description.facing_classes) {
+    rule_of(facing.interaction_class).away_degrees = static_cast<float>(facing.degrees);
+  }
+  return rules;
+}
+
+motion::Poses StartPose(const ModelDescription& description, const SynthesisWindow& window) {
+  if (!window.start || window.start->pose.empty()) return {0, description.skeleton.joint_count()};
+  return {description.skeleton.joint_count(), window.start->pose};
+}
+
+absl::Status CheckFinite(const motion::Poses& follower) {
+  if (std::all_of(follower.all().begin(), follower.all().end(), motion::IsFinite)) {
+    return absl::OkStatus();
+  }
+  return absl::InternalError("the network's result is not finite");
+}
+
+// Sets the follower's limb lengths in every frame to those of its start's pose, or else to the
+// leader's median lengths times ModelDescription::bone_ratios.
+void KeepLimbLengths(const ModelDescription& description, const SynthesisWindow& window,
+                     motion::Poses* follower) {
+  const motion::Skeleton& skeleton = description.skeleton;
+  const motion::Poses start = StartPose(description, window);
+  std::vector<float> lengths = MedianBoneLengths(skeleton, start.empty() ? window.leader : start);
+  if (start.empty() && !description.bone_ratios.empty()) {
+    for (std::size_t b = 0; b < lengths.size(); ++b) {
+      lengths[b] *= static_cast<float>(description.bone_ratios[b]);
+    }
+  }
+  SetBoneLengths(skeleton, lengths, follower);
+}
+
+// The follower's body: that of its start's pose, or else the leader's in the follower's size.
+// Errors: those of BodyModel::Measure.
+absl::StatusOr<solver::BodyModel> PersonOf(const ModelDescription& description,
+                                           const SynthesisWindow& window) {
+  const motion::Poses start = StartPose(description, window);
+  absl::StatusOr<solver::BodyModel> person =
+      solver::BodyModel::Measure(description.skeleton, start.empty() ? window.leader : start);
+  if (person.ok() && start.empty() && !description.bone_ratios.empty()) {
+    const double sum =
+        std::accumulate(description.bone_ratios.begin(), description.bone_ratios.end(), 0.0);
+    person->Scale(static_cast<float>(sum / static_cast<double>(description.bone_ratios.size())));
+  }
+  return person;
+}
+
+// Moves a follower without a start vertically so that its lowest foot is as high as the leader's.
+// Does nothing for a skeleton without feet.
+void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+                motion::Poses* follower) {
+  if (window.start || !skeleton.feet) return;
+  const motion::Vec3 lift{
+      0, LowestFoot(*skeleton.feet, window.leader) - LowestFoot(*skeleton.feet, *follower), 0};
+  for (motion::Vec3& position : follower->all()) position += lift;
+}
+
+// The window's first frames as the caller has them: the settled ones and those that were sent, or
+// the pose of the start, or none.
+motion::Poses GivenFrames(const ModelDescription& description, const SynthesisWindow& window) {
+  if (window.settled.empty()) return StartPose(description, window);
+  motion::Poses given = window.settled;
+  given.Append(window.sent.all());
+  return given;
 }
 
 using Windows = absl::Span<const SynthesisWindow* const>;
@@ -83,8 +168,12 @@ class NetworkSynthesizer : public Synthesizer {
     const WindowPlan plan = PlanWindows(frames, model.window_frames, kOverlap);
     std::vector<double> windows;
     for (const int start : plan.starts) {
-      windows.push_back(engine::Unfamiliarity(*model.leader_statistics, model.skeleton,
-                                              LeaderWindow(model, request, start, plan.length),
+      motion::Poses leader(plan.length, model.skeleton.joint_count());
+      for (int t = 0; t < plan.length; ++t) {
+        SampleLinear(request.leader, (start + t) * request.frame_rate_hz / model.frame_rate_hz,
+                     leader[t]);
+      }
+      windows.push_back(engine::Unfamiliarity(*model.leader_statistics, model.skeleton, leader,
                                               model.frame_rate_hz));
       // Positions may be as large as a float can be.
       if (!std::isfinite(windows.back())) return std::nullopt;
@@ -111,7 +200,6 @@ class NetworkSynthesizer : public Synthesizer {
     const int count = CandidateCount(description_, window.options.sampling);
     Task task{&window, standardisation, Mixture(description_, body_, input), count, inputs->size()};
     const uint64_t seed = input.sampling.seed;
-    input.sampling.variety = CandidateVariety(input.sampling.variety, count);
     for (int n = 0; n < count; ++n) {
       input.sampling.seed = CandidateSeed(seed, n);
       task.mixture.AddInputs(input, inputs);
@@ -178,9 +266,8 @@ class NetworkSynthesizer : public Synthesizer {
       followers.push_back(*std::move(finished));
     }
     const int given = GivenFrames(description_, window).frame_count();
-    const int best =
-        judge_.Best(window.leader, followers, given, description_.frame_rate_hz,
-                    window.options.sampling.variety, window.pins, RulesOf(task), window.labels);
+    const int best = judge_.Best(window.leader, followers, given, description_.frame_rate_hz,
+                                 window.pins, RulesOf(task), window.labels);
     // Only the chosen one is moved to the pins: a sample that is near already is the better one.
     if (!window.pins.empty()) {
       return Finish(task, candidates[static_cast<std::size_t>(best)], window.pins);
@@ -195,7 +282,8 @@ class NetworkSynthesizer : public Synthesizer {
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
-    const bool solves = IsCleanedUp(window) && solver_.CanSolve();
+    const bool solves = window.options.clean_up.value_or(description_.cleaned_up_by_default()) &&
+                        solver_.CanSolve();
     solver::Situation situation{window.leader, window.hidden_frames,
                                 GivenFrames(description_, window), RulesOf(task), pins};
     if (solves || !window.settled.empty()) solver_.Join(situation.given, &follower);
@@ -211,10 +299,6 @@ class NetworkSynthesizer : public Synthesizer {
 
   solver::ContactRules RulesOf(const Task& task) const {
     return ContactRulesOf(description_, body_, task.mixture.labels());
-  }
-
-  bool IsCleanedUp(const SynthesisWindow& window) const {
-    return window.options.clean_up.value_or(description_.cleaned_up_by_default());
   }
 
   ModelDescription description_;
@@ -267,6 +351,43 @@ std::vector<WindowResult> FinishMotions(const ModelDescription& description,
   return MakeSynthesizer(description, kOrigin,
                          std::make_unique<GivenFollowers>(std::move(standard)))
       ->Synthesize(pointers);
+}
+
+solver::ContactRules ContactRulesOf(const ModelDescription& description, const body::Body& body,
+                                    absl::Span<const float> labels) {
+  const std::vector<solver::ContactRule> classes = RulesOfClasses(description, body);
+  float farthest_away = classes.empty() ? kTurnedRound : 0;
+  for (const solver::ContactRule& rule : classes) {
+    farthest_away = std::max(farthest_away, rule.away_degrees);
+  }
+  solver::ContactRules rules(classes.empty() ? 0 : labels.size() / classes.size());
+  for (std::size_t t = 0; t < rules.size(); ++t) {
+    solver::ContactRule& rule = rules[t];
+    float weights = 0, away = 0;
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+      const float weight = std::max(0.0f, labels[t * classes.size() + c]);
+      rule.overlap += weight * classes[c].overlap;
+      rule.hands += weight * classes[c].hands;
+      rule.hands_metres += weight * classes[c].hands * classes[c].hands_metres;
+      for (std::size_t a = 0; a < rule.holds.size(); ++a) {
+        const solver::TrunkHold& hold = classes[c].holds[a];
+        rule.holds[a].place += hold.place * (weight * hold.weight);
+        rule.holds[a].weight += weight * hold.weight;
+      }
+      away += weight * classes[c].away_degrees;
+      weights += weight;
+    }
+    if (rule.hands > 0) rule.hands_metres /= rule.hands;
+    rule.overlap = std::min(1.0f, rule.overlap);
+    rule.hands = std::min(1.0f, rule.hands);
+    for (solver::TrunkHold& hold : rule.holds) {
+      if (hold.weight > 0) hold.place = hold.place / hold.weight;
+      hold.weight = std::min(1.0f, hold.weight);
+    }
+    // A follower of no class may do what those of any class do.
+    rule.away_degrees = weights > 0 ? away / weights : farthest_away;
+  }
+  return rules;
 }
 
 }  // namespace duet::engine

@@ -5,12 +5,15 @@
 #include <optional>
 #include <vector>
 
+#include "absl/types/span.h"
+#include "model/body/limbs.h"
 #include "model/engine/critic.h"
 #include "model/engine/model_description.h"
 #include "model/engine/network.h"
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
 #include "model/motion/standardise.h"
+#include "model/solver/partner.h"
 
 namespace duet::engine {
 
@@ -45,6 +48,12 @@ std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
 std::vector<WindowResult> FinishMotions(const ModelDescription& description,
                                         const std::vector<SynthesisWindow>& windows,
                                         const std::vector<motion::Poses>& followers);
+
+// How the two people may touch in each frame, by the labels: a mean of what the classes permit,
+// weighted by their positive weights. `body`: of the description's skeleton. Shapes: labels
+// [frames, classes]; returns [frames].
+solver::ContactRules ContactRulesOf(const ModelDescription& description, const body::Body& body,
+                                    absl::Span<const float> labels);
 
 }  // namespace duet::engine
 

@@ -7,15 +7,13 @@
 
 #include "absl/types/span.h"
 #include "model/base/split_mix.h"
+#include "model/solver/geometry.h"
 
 namespace duet::engine {
 namespace {
 
 // Below this share of the wanted length a blended bone has no direction to speak of.
 constexpr float kLeastDirection = 0.1f;
-
-// 0 to 1 with level ends.
-float SmoothStep(float t) { return t * t * (3 - 2 * t); }
 
 motion::Vec3 BlendBone(motion::Vec3 a, motion::Vec3 b, float weight) {
   const motion::Vec3 average = Lerp(a, b, weight);
@@ -36,6 +34,9 @@ std::vector<motion::Bone> ParentsFirst(const motion::Skeleton& skeleton) {
 constexpr double kSeconds = 0.25;
 constexpr double kMetres = 0.05;
 constexpr uint64_t kSeeds = uint64_t{1} << 32;  // every number of JSON can hold them
+
+// Closer than this the direction from root to root says little: people in a hug.
+constexpr float kMinDistanceMetres = 0.3f;
 
 }  // namespace
 
@@ -62,7 +63,8 @@ CrossFade::CrossFade(const motion::Skeleton& skeleton)
 void CrossFade::Blend(const motion::Poses& next, int first, motion::Poses* poses) const {
   const int frames = poses->frame_count() - first;
   for (int t = 0; t < frames; ++t) {
-    const float weight = SmoothStep(static_cast<float>(t + 1) / static_cast<float>(frames + 1));
+    const float weight =
+        solver::SmoothStep(static_cast<float>(t + 1) / static_cast<float>(frames + 1));
     BlendPose(next[t], weight, (*poses)[first + t]);
   }
 }
@@ -136,6 +138,39 @@ uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz,
   const uint64_t drawn = base::SplitMix(static_cast<uint64_t>(std::llround(way / kMetres)),
                                         static_cast<uint64_t>(std::llround(seconds / kSeconds)));
   return seeds.empty() ? drawn % kSeeds : seeds[drawn % seeds.size()];
+}
+
+motion::Standardisation WindowStandardisation(const motion::Skeleton& skeleton,
+                                              const SynthesisWindow& window,
+                                              motion::StandardOrigin origin) {
+  if (window.partner_direction) {
+    return {skeleton, window.leader, FacingYaw(*window.partner_direction), origin};
+  }
+  if (window.start) {
+    const motion::Vec3 root = window.leader.at(0, skeleton.root);
+    const motion::Vec3 toward = window.start->root - root;
+    if (std::hypot(toward.x, toward.z) >= kMinDistanceMetres) {
+      return {skeleton, window.leader, FacingYaw(toward), origin};
+    }
+  }
+  return {skeleton, window.leader, motion::YawDirection::kRemove, origin};
+}
+
+NetworkInput Standardise(const motion::Standardisation& standardisation,
+                         const SynthesisWindow& window) {
+  NetworkInput input;
+  input.leader = standardisation.Apply(window.leader);
+  input.hidden_frames = window.hidden_frames;
+  input.labels = window.labels;
+  input.sampling = window.options.sampling;
+  input.settled = standardisation.Apply(window.settled);
+  input.cancelled = window.cancelled.get();
+  if (!window.start) return input;
+  input.start = FollowerStart{standardisation.Apply(window.start->root), {}};
+  for (const motion::Vec3& joint : window.start->pose) {
+    input.start->pose.push_back(standardisation.Apply(joint));
+  }
+  return input;
 }
 
 }  // namespace duet::engine

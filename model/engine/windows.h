@@ -7,9 +7,11 @@
 
 #include "absl/types/span.h"
 #include "model/engine/model_description.h"
+#include "model/engine/network.h"
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/standardise.h"
 #include "model/motion/vec3.h"
 
 namespace duet::engine {
@@ -60,15 +62,6 @@ class CrossFade {
 // What a synthesis in overlapping windows carries from one window to the next: the number of
 // windows so far, and the follower's frames that later windows may still change or continue from.
 // Frames are counted at the model's rate from the first frame of the first window.
-//
-// A value: copies are independent, so a synthesis can try a window on a copy and discard it.
-//
-//   WindowState state(model.skeleton.joint_count());
-//   for each window, at model frame `start`:
-//     if (state.window_count() > 0) ContinueFrom(state, start, model, &window);
-//     ... evaluate the window ...
-//     state.Add(start, follower, cross_fade);
-//     ... use state.follower(), then state.DropBefore(next start) ...
 //
 // Cost:    memory of the frames that are kept.
 // Threads: not safe to call concurrently.
@@ -125,6 +118,20 @@ uint64_t WindowSeed(uint64_t seed, int window);
 // `seeds`, or a number below 2^32 if that is empty. Units: metres.
 uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz,
                     const std::vector<uint64_t>& seeds);
+
+// Returns the coordinates in which the network sees a window, in training and in service. The
+// leader's root is at the origin (in every frame, or in the first one). -z points towards the
+// follower: along the window's partner direction; else towards the follower's start, unless both
+// are at nearly the same position; else in the direction of the leader's hips. A leader without
+// hips is not turned.
+motion::Standardisation WindowStandardisation(
+    const motion::Skeleton& skeleton, const SynthesisWindow& window,
+    motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame);
+
+// Converts a window to the standard coordinates of its leader. The follower's start is relative to
+// the leader's first root position.
+NetworkInput Standardise(const motion::Standardisation& standardisation,
+                         const SynthesisWindow& window);
 
 }  // namespace duet::engine
 

@@ -58,7 +58,8 @@ FollowerSolver::FollowerSolver(const motion::Skeleton& skeleton, double frame_ra
     return;
   }
   trunk_.emplace(skeleton_, body_);
-  partner_.emplace(skeleton_, body_);
+  limbs_ = body_.legs;
+  limbs_.insert(limbs_.end(), body_.arms.begin(), body_.arms.end());
 }
 
 void FollowerSolver::Join(const motion::Poses& given, motion::Poses* follower) const {
@@ -124,44 +125,41 @@ void FollowerSolver::Solve(const Situation& situation, const BodyModel& person,
   trunk_->LimitTwist(frame_rate_hz_, given, follower);
   fit();
   trunk_->LimitLean(frame_rate_hz_, given, OwnLean(situation), follower);
-  partner_->PlaceBody(situation.leader, situation.rules, frame_rate_hz_, given, follower);
+  const Encounter encounter{skeleton_,       body_,          situation.leader,
+                            situation.rules, frame_rate_hz_, given};
+  PlaceBody(encounter, follower);
   const std::vector<motion::Poses> bends = SmoothBends(*follower);
   const PinnedBody pinned(skeleton_, body_, situation.pins, frame_rate_hz_, given, *follower);
   if (!situation.pins.empty()) pinned.Approach(follower);
   PlaceFeet(situation, stretches, follower);
-  partner_->PlaceHands(situation.leader, situation.rules, frame_rate_hz_, given, follower);
+  PlaceHands(encounter, follower);
   BendLimbs(bends, given, follower);
   if (!situation.pins.empty()) pinned.Place(follower);
 }
 
 std::vector<motion::Poses> FollowerSolver::SmoothBends(const motion::Poses& follower) const {
   std::vector<motion::Poses> all;
-  for (const std::vector<body::Limb>* limbs : {&body_.legs, &body_.arms}) {
-    for (const body::Limb& limb : *limbs) {
-      motion::Poses bends(follower.frame_count(), 1);
-      for (int t = 0; t < follower.frame_count(); ++t) {
-        const Vec3 facing = body::Facing(*skeleton_.hips, follower[t]);
-        const Vec3 straight = limbs == &body_.legs ? facing : Vec3{0, -kDown, 0} - facing * kBack;
-        Vec3 bend = body::BendOf(limb, follower[t]);
-        // A knee never bends backwards.
-        if (limbs == &body_.legs) bend -= facing * std::min(0.0f, Dot(bend, facing));
-        bends.at(t, 0) = bend + straight * std::max(0.0f, kClearBend - Norm(bend));
-      }
-      all.push_back(motion::GaussianFilter(bends, kBendSeconds * frame_rate_hz_));
+  for (const body::Limb& limb : limbs_) {
+    const bool is_leg = all.size() < body_.legs.size();
+    motion::Poses bends(follower.frame_count(), 1);
+    for (int t = 0; t < follower.frame_count(); ++t) {
+      const Vec3 facing = body::Facing(*skeleton_.hips, follower[t]);
+      const Vec3 straight = is_leg ? facing : Vec3{0, -kDown, 0} - facing * kBack;
+      Vec3 bend = body::BendOf(limb, follower[t]);
+      // A knee never bends backwards.
+      if (is_leg) bend -= facing * std::min(0.0f, Dot(bend, facing));
+      bends.at(t, 0) = bend + straight * std::max(0.0f, kClearBend - Norm(bend));
     }
+    all.push_back(motion::GaussianFilter(bends, kBendSeconds * frame_rate_hz_));
   }
   return all;
 }
 
 void FollowerSolver::BendLimbs(const std::vector<motion::Poses>& bends, int given,
                                motion::Poses* follower) const {
-  std::size_t index = 0;
-  for (const std::vector<body::Limb>* limbs : {&body_.legs, &body_.arms}) {
-    for (const body::Limb& limb : *limbs) {
-      for (int t = given; t < follower->frame_count(); ++t) {
-        body::ReachBent(limb, follower->at(t, limb.end), bends[index].at(t, 0), (*follower)[t]);
-      }
-      ++index;
+  for (std::size_t i = 0; i < limbs_.size(); ++i) {
+    for (int t = given; t < follower->frame_count(); ++t) {
+      body::ReachBent(limbs_[i], follower->at(t, limbs_[i].end), bends[i].at(t, 0), (*follower)[t]);
     }
   }
 }

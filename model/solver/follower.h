@@ -66,7 +66,7 @@ class FollowerSolver {
   void StandOnFloor(double floor, int given, motion::Poses* follower) const;
   void PlaceFeet(const Situation& situation, const Stretches& stretches,
                  motion::Poses* follower) const;
-  // Where knees and elbows point: legs, then arms, each [frames, 1].
+  // Where knees and elbows point: [limbs_], each [frames, 1].
   std::vector<motion::Poses> SmoothBends(const motion::Poses& follower) const;
   void BendLimbs(const std::vector<motion::Poses>& bends, int given, motion::Poses* follower) const;
   // The height of a standing foot, and how far the person leans in the given frames.
@@ -77,7 +77,7 @@ class FollowerSolver {
   const double frame_rate_hz_;
   const body::Body body_;
   std::optional<Trunk> trunk_;
-  std::optional<Partner> partner_;
+  std::vector<body::Limb> limbs_;  // legs, then arms
 };
 
 // Keeps the feet of a frame between two planned ones on the straight way between their places:

@@ -30,6 +30,11 @@ inline motion::Vec3 Unit(motion::Vec3 v) {
 }
 // The part across an axis of length 1.
 inline motion::Vec3 Across(motion::Vec3 v, motion::Vec3 axis) { return v - axis * Dot(v, axis); }
+// 0 to 1 with level ends, for `t` from 0 to 1.
+inline float SmoothStep(float t) {
+  const float u = std::clamp(t, 0.0f, 1.0f);
+  return u * u * (3 - 2 * u);
+}
 // The angle about an axis of length 1 from `from` to `to`, radians, in (-pi, pi].
 inline double AngleAbout(motion::Vec3 axis, motion::Vec3 from, motion::Vec3 to) {
   return std::atan2(double{Dot(axis, Cross(from, to))},

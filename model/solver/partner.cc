@@ -28,8 +28,8 @@ constexpr float kNearest = 0.17f, kFarthest = 2.6f;
 // capsules are approximate; the least distance of the axes of trunks, and of heads. Metres.
 constexpr float kTrunk = 0.11f, kHead = 0.09f, kShoulders = 0.1f, kSoft = 0.03f;
 constexpr float kLeastTrunks = 0.2f, kLeastHeads = 0.21f;
-// Axes that are farther apart than any of these sums do not overlap. Metres.
-constexpr float kNeverCloser = 0.25f;
+// Bodies whose chests are farther apart than this along the floor do not overlap. Metres.
+constexpr float kNeverOverlap = 2;
 // What a body is moved for one overlap at most; how far it comes for a hand. Metres.
 constexpr float kMostPush = 0.3f, kMostCome = 0.3f;
 // A hand is farther than this from the leader's surface; its radius is within. Metres.
@@ -65,24 +65,6 @@ Core CoreOf(const motion::Skeleton& skeleton, const body::Body& body, absl::Span
        {JointAt(pose, body.shoulders->left), JointAt(pose, body.shoulders->right), kShoulders}}};
 }
 
-// A circle on the floor around a core's axes.
-struct Circle {
-  Vec3 centre;
-  float radius;
-};
-
-Circle CircleAround(const Core& core) {
-  const Vec3 centre = Lerp(core[0].from, core[0].to, 0.5f);
-  float squared = 0;
-  for (const Capsule& part : core) {
-    for (const Vec3 end : {part.from, part.to}) {
-      const Vec3 away = Level(end - centre);
-      squared = std::max(squared, Dot(away, away));
-    }
-  }
-  return {centre, std::sqrt(squared)};
-}
-
 // Where the trunk faces along the floor, of length 1.
 Vec3 FacingOf(const motion::Skeleton& skeleton, const body::Body& body,
               absl::Span<const Vec3> pose) {
@@ -99,14 +81,9 @@ std::vector<double> WeightsOf(const std::vector<Vec3>& wishes) {
   return weights;
 }
 
-float SmoothStep(double t) {
-  const float u = static_cast<float>(std::clamp(t, 0.0, 1.0));
-  return u * u * (3 - 2 * u);
-}
-
 // 1 up to `near`, 0 from `far` on.
 float Nearness(float distance, float near, float far) {
-  return SmoothStep(double{(far - distance) / (far - near)});
+  return SmoothStep((far - distance) / (far - near));
 }
 
 // A vector of at most a length, nearly unchanged while it is shorter. Smooth.
@@ -161,234 +138,254 @@ std::vector<double> DegreesAway(const motion::Skeleton& skeleton, const body::Bo
   return degrees;
 }
 
-void Partner::FaceLeader(const motion::Poses& leader, const ContactRules& rules,
-                         double frame_rate_hz, int given, motion::Poses* follower) const {
-  std::vector<double> wishes, weights;
-  bool turned_away = false;
-  for (const double away : DegreesAway(skeleton_, body_, leader, *follower, frame_rate_hz)) {
-    const double most = double{rules[wishes.size()].away_degrees};
-    const double excess = (away - std::clamp(away, -most, most)) * base::kRadiansPerDegree;
-    turned_away = turned_away || excess != 0;
-    wishes.push_back(excess);
-    weights.push_back(excess != 0 ? 1 : kIdle);
-  }
-  if (!turned_away) return;
-  const std::vector<double> turns =
-      SmoothCorrection({frame_rate_hz, kTurnSeconds, kNear, given}, weights, wishes);
-  for (int t = given; t < follower->frame_count(); ++t) {
-    const Vec3 root = follower->at(t, skeleton_.root);
-    for (Vec3& joint : (*follower)[t]) {
-      joint = root + RotateY(joint - root, turns[static_cast<std::size_t>(t)]);
-    }
-  }
-}
+namespace {
 
-float Partner::Overlap(absl::Span<const Vec3> leader, absl::Span<const Vec3> follower,
-                       float allowed) const {
-  const Core a = CoreOf(skeleton_, body_, leader), b = CoreOf(skeleton_, body_, follower);
-  const Circle around_a = CircleAround(a), around_b = CircleAround(b);
-  const float apart = Norm(Level(around_a.centre - around_b.centre));
-  if (apart > around_a.radius + around_b.radius + kNeverCloser) return 0;
-  float deepest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      float need = (a[i].radius + b[j].radius - kSoft) * (1 - allowed);
-      if (i == 0 && j == 0) need = std::max(need, kLeastTrunks);
-      if (i == 1 && j == 1) need = std::max(need, kLeastHeads);
-      const motion::ClosestPoints closest =
-          motion::FindClosestPoints(a[i].from, a[i].to, b[j].from, b[j].to);
-      deepest = std::max(deepest, need - static_cast<float>(closest.distance));
-    }
-  }
-  return std::min(deepest, kMostPush);
-}
+// A hand of the leader that is met, by which hand, and how much in each frame.
+struct Meeting {
+  const body::Limb* leader = nullptr;
+  const body::Limb* follower = nullptr;
+  std::vector<float> weights;
+};
 
-Vec3 Partner::WayForHand(const Meeting& meeting, const motion::Poses& leader,
-                         const ContactRules& rules, int t, const motion::Poses& follower) const {
-  const std::size_t at = static_cast<std::size_t>(t);
-  const Vec3 hand = leader.at(t, meeting.leader->end);
-  const Vec3 way = Level(hand - follower.at(t, meeting.follower->upper));
-  const float reach = kComfortable * body::LengthOf(*meeting.follower, follower[t]);
-  const float lacks = Norm(way) - reach - rules[at].hands_metres;
-  return Unit(way) * (meeting.weights[at] * std::clamp(lacks, 0.0f, kMostCome));
-}
+// Corrects a follower, one rule after the other.
+class Correction {
+ public:
+  Correction(const Encounter& encounter, motion::Poses* follower)
+      : encounter_(encounter),
+        skeleton_(encounter.skeleton),
+        body_(encounter.body),
+        leader_(encounter.leader),
+        rate_(encounter.frame_rate_hz),
+        follower_(*follower),
+        frames_(follower->frame_count()) {}
 
-void Partner::PlaceBody(const motion::Poses& leader, const ContactRules& rules,
-                        double frame_rate_hz, int given, motion::Poses* follower) const {
-  FaceLeader(leader, rules, frame_rate_hz, given, follower);
-  const int frames = follower->frame_count();
-  const std::vector<Meeting> meetings = FindMeetings(leader, rules, frame_rate_hz, *follower);
-  for (int round = 0; round < kRounds; ++round) {
-    motion::Poses offsets(frames, 1);
-    for (int t = 0; t < frames; ++t) {
-      offsets.at(t, 0) = Level(follower->at(t, skeleton_.root) - leader.at(t, skeleton_.root));
+  void FaceLeader() {
+    std::vector<double> wishes, weights;
+    bool turned_away = false;
+    for (const double away : DegreesAway(skeleton_, body_, leader_, follower_, rate_)) {
+      const double most = double{encounter_.rules[wishes.size()].away_degrees};
+      const double excess = (away - std::clamp(away, -most, most)) * base::kRadiansPerDegree;
+      turned_away = turned_away || excess != 0;
+      wishes.push_back(excess);
+      weights.push_back(excess != 0 ? 1 : kIdle);
     }
-    const motion::Poses lasting = motion::GaussianFilter(offsets, kLastingSeconds * frame_rate_hz);
-    std::vector<Vec3> wishes;
-    for (int t = 0; t < frames; ++t) {
-      const Vec3 offset = lasting.at(t, 0);
-      const float distance = Norm(offset);
-      Vec3 wish = Unit(offset) * (std::clamp(distance, kNearest, kFarthest) - distance);
-      for (const Meeting& meeting : meetings) {
-        wish += WayForHand(meeting, leader, rules, t, *follower);
+    if (!turned_away) return;
+    const std::vector<double> turns = SmoothCorrection(Cost(kTurnSeconds), weights, wishes);
+    for (int t = encounter_.given; t < frames_; ++t) {
+      const Vec3 root = follower_.at(t, skeleton_.root);
+      for (Vec3& joint : follower_[t]) {
+        joint = root + RotateY(joint - root, turns[static_cast<std::size_t>(t)]);
       }
-      const float deep =
-          Overlap(leader[t], (*follower)[t], rules[static_cast<std::size_t>(t)].overlap);
-      const Vec3 out = Unit(offsets.at(t, 0));
-      if (deep > 0) wish += (out == Vec3{} ? Vec3{0, 0, 1} : out) * deep;
-      wishes.push_back(wish);
-    }
-    const std::vector<Vec3> shifts =
-        SmoothShift({frame_rate_hz, kBodySeconds, kNear, given}, WeightsOf(wishes), wishes);
-    for (int t = given; t < frames; ++t) {
-      for (Vec3& joint : (*follower)[t]) joint += shifts[static_cast<std::size_t>(t)];
     }
   }
-}
 
-const body::Limb* Partner::NearestArm(const Meeting& meeting, const motion::Poses& leader,
-                                      const motion::Poses& follower) const {
-  const body::Limb* nearest = nullptr;
-  float least = HUGE_VALF;
-  for (const body::Limb& arm : body_.arms) {
-    float sum = 0;
-    for (int t = 0; t < follower.frame_count(); ++t) {
-      sum += meeting.weights[static_cast<std::size_t>(t)] *
-             Distance(leader.at(t, meeting.leader->end), follower.at(t, arm.end));
+  // Keeps the body near, out of the leader, and within reach of the hands that it meets.
+  void MoveBody() {
+    const std::vector<Meeting> meetings = FindMeetings();
+    for (int round = 0; round < kRounds; ++round) {
+      motion::Poses offsets(frames_, 1);
+      for (int t = 0; t < frames_; ++t) offsets.at(t, 0) = -ToLeader(t);
+      const motion::Poses lasting = motion::GaussianFilter(offsets, kLastingSeconds * rate_);
+      std::vector<Vec3> wishes;
+      for (int t = 0; t < frames_; ++t) {
+        const Vec3 offset = lasting.at(t, 0);
+        const float distance = Norm(offset);
+        Vec3 wish = Unit(offset) * (std::clamp(distance, kNearest, kFarthest) - distance);
+        for (const Meeting& meeting : meetings) wish += WayForHand(meeting, t);
+        const Vec3 out = Unit(offsets.at(t, 0));
+        const float deep = Overlap(t);
+        if (deep > 0) wish += (out == Vec3{} ? Vec3{0, 0, 1} : out) * deep;
+        wishes.push_back(wish);
+      }
+      const std::vector<Vec3> shifts = SmoothShift(Cost(kBodySeconds), WeightsOf(wishes), wishes);
+      for (int t = encounter_.given; t < frames_; ++t) {
+        for (Vec3& joint : follower_[t]) joint += shifts[static_cast<std::size_t>(t)];
+      }
     }
-    if (sum >= least) continue;
-    least = sum;
-    nearest = &arm;
   }
-  return nearest;
-}
 
-std::vector<Partner::Meeting> Partner::FindMeetings(const motion::Poses& leader,
-                                                    const ContactRules& rules, double frame_rate_hz,
-                                                    const motion::Poses& follower) const {
-  const int frames = follower.frame_count();
-  motion::Poses offers(frames, 2);  // x: how much each hand of the leader is offered
-  for (int t = 0; t < frames; ++t) {
+  void MeetHands() {
+    const std::vector<Meeting> meetings = FindMeetings();
+    for (int round = 0; round < kRounds; ++round) {
+      for (const body::Limb& arm : body_.arms) MoveHand(arm, meetings);
+    }
+  }
+
+  // Brings a hand to where it rests on the leader's trunk, where both people are close and the hand
+  // is near already. Weights and reach are smooth: rounding must not become a motion.
+  void HoldTrunk(std::size_t arm) {
+    const body::Limb& limb = body_.arms[arm];
+    motion::Poses weights(frames_, 1);  // x
+    std::vector<Vec3> places;
+    bool holds = false;
+    for (int t = 0; t < frames_; ++t) {
+      const TrunkHold& hold = RuleAt(t).holds[arm];
+      places.push_back(TrunkAxesOf(skeleton_, body_, leader_[t]).WorldOf(hold.place));
+      const float apart = Distance(places.back(), follower_.at(t, limb.end));
+      float& weight = weights.at(t, 0).x;
+      weight = hold.weight * Nearness(Norm(ToLeader(t)), kEmbraced, kApart) *
+               Nearness(apart, kHeld, kFree);
+      holds = holds || weight > 0;
+    }
+    if (!holds) return;
+    weights = motion::GaussianFilter(weights, kHoldSeconds * rate_);
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<double> pulls;
+      std::vector<Vec3> wishes;
+      for (int t = 0; t < frames_; ++t) {
+        const Vec3 shoulder = follower_.at(t, limb.upper);
+        const float reach = kAround * body::LengthOf(limb, follower_[t]);
+        const Vec3 place = shoulder + Within(places[static_cast<std::size_t>(t)] - shoulder, reach);
+        const float weight = weights.at(t, 0).x, pull = weight + static_cast<float>(kIdle);
+        pulls.push_back(double{pull});
+        wishes.push_back((place - follower_.at(t, limb.end)) * (weight / pull));
+      }
+      MoveHand(limb, SmoothShift(Cost(kHoldSeconds), pulls, wishes));
+    }
+  }
+
+ private:
+  CorrectionCost Cost(double seconds) const { return {rate_, seconds, kNear, encounter_.given}; }
+  const ContactRule& RuleAt(int t) const { return encounter_.rules[static_cast<std::size_t>(t)]; }
+  // From the follower's root to the leader's, along the floor.
+  Vec3 ToLeader(int t) const {
+    return Level(leader_.at(t, skeleton_.root) - follower_.at(t, skeleton_.root));
+  }
+
+  float Overlap(int t) const {
+    const Core a = CoreOf(skeleton_, body_, leader_[t]), b = CoreOf(skeleton_, body_, follower_[t]);
+    if (Norm(Level(a[0].from - b[0].from)) > kNeverOverlap) return 0;
+    float deepest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      for (std::size_t j = 0; j < b.size(); ++j) {
+        float need = (a[i].radius + b[j].radius - kSoft) * (1 - RuleAt(t).overlap);
+        if (i == 0 && j == 0) need = std::max(need, kLeastTrunks);
+        if (i == 1 && j == 1) need = std::max(need, kLeastHeads);
+        const motion::ClosestPoints closest =
+            motion::FindClosestPoints(a[i].from, a[i].to, b[j].from, b[j].to);
+        deepest = std::max(deepest, need - static_cast<float>(closest.distance));
+      }
+    }
+    return std::min(deepest, kMostPush);
+  }
+
+  // The way of the body until the follower's hand reaches the leader's.
+  Vec3 WayForHand(const Meeting& meeting, int t) const {
+    const Vec3 way =
+        Level(leader_.at(t, meeting.leader->end) - follower_.at(t, meeting.follower->upper));
+    const float reach = kComfortable * body::LengthOf(*meeting.follower, follower_[t]);
+    const float lacks = Norm(way) - reach - RuleAt(t).hands_metres;
+    return Unit(way) *
+           (meeting.weights[static_cast<std::size_t>(t)] * std::clamp(lacks, 0.0f, kMostCome));
+  }
+
+  // The hand that is nearest to the leader's while that is met.
+  const body::Limb* NearestArm(const Meeting& meeting) const {
+    const body::Limb* nearest = nullptr;
+    float least = HUGE_VALF;
+    for (const body::Limb& arm : body_.arms) {
+      float sum = 0;
+      for (int t = 0; t < frames_; ++t) {
+        sum += meeting.weights[static_cast<std::size_t>(t)] *
+               Distance(leader_.at(t, meeting.leader->end), follower_.at(t, arm.end));
+      }
+      if (sum >= least) continue;
+      least = sum;
+      nearest = &arm;
+    }
+    return nearest;
+  }
+
+  // One for each hand of the leader that is offered at any time, and more than the other one.
+  std::vector<Meeting> FindMeetings() const {
+    motion::Poses offers(frames_, 2);  // x: how much each hand of the leader is offered
+    for (int t = 0; t < frames_; ++t) {
+      for (int arm = 0; arm < 2; ++arm) {
+        const double reach =
+            body::ReachTowards(body_.arms[static_cast<std::size_t>(arm)], skeleton_.root,
+                               leader_[t], follower_.at(t, skeleton_.root));
+        offers.at(t, arm).x =
+            RuleAt(t).hands *
+            SmoothStep(static_cast<float>((reach - kAnswers) / (kMeets - kAnswers)));
+      }
+    }
+    offers = motion::GaussianFilter(offers, kHandSeconds * rate_);
+    std::vector<Meeting> meetings;
     for (int arm = 0; arm < 2; ++arm) {
-      const double reach =
-          body::ReachTowards(body_.arms[static_cast<std::size_t>(arm)], skeleton_.root, leader[t],
-                             follower.at(t, skeleton_.root));
-      offers.at(t, arm).x = rules[static_cast<std::size_t>(t)].hands *
-                            SmoothStep((reach - kAnswers) / (kMeets - kAnswers));
+      Meeting meeting{&body_.arms[static_cast<std::size_t>(arm)], nullptr, {}};
+      bool meets = false;
+      for (int t = 0; t < frames_; ++t) {
+        const float own = offers.at(t, arm).x, other = offers.at(t, 1 - arm).x;
+        const bool more = own > other || (own == other && arm == 0);
+        meeting.weights.push_back(more ? std::max(0.0f, own) : 0);
+        meets = meets || meeting.weights.back() > 0;
+      }
+      if (!meets) continue;
+      meeting.follower = NearestArm(meeting);
+      meetings.push_back(std::move(meeting));
     }
+    return meetings;
   }
-  offers = motion::GaussianFilter(offers, kHandSeconds * frame_rate_hz);
-  std::vector<Meeting> meetings;
-  for (int arm = 0; arm < 2; ++arm) {
-    Meeting meeting{&body_.arms[static_cast<std::size_t>(arm)], nullptr, {}};
-    bool meets = false;
-    for (int t = 0; t < frames; ++t) {
-      const float own = offers.at(t, arm).x, other = offers.at(t, 1 - arm).x;
-      const bool more = own > other || (own == other && arm == 0);
-      meeting.weights.push_back(more ? std::max(0.0f, own) : 0);
-      meets = meets || meeting.weights.back() > 0;
-    }
-    if (!meets) continue;
-    meeting.follower = NearestArm(meeting, leader, follower);
-    meetings.push_back(std::move(meeting));
-  }
-  return meetings;
-}
 
-Vec3 Partner::WayToMeet(const Meeting& meeting, const motion::Poses& leader, float metres, int t,
-                        const motion::Poses& follower) const {
-  const Vec3 way = leader.at(t, meeting.leader->end) - follower.at(t, meeting.follower->end);
-  return Unit(way) * std::max(0.0f, Norm(way) - metres);
-}
-
-void Partner::PlaceHands(const motion::Poses& leader, const ContactRules& rules,
-                         double frame_rate_hz, int given, motion::Poses* follower) const {
-  const std::vector<Meeting> meetings = FindMeetings(leader, rules, frame_rate_hz, *follower);
-  for (int round = 0; round < kRounds; ++round) {
-    MoveHands(meetings, leader, rules, frame_rate_hz, given, follower);
-  }
-  for (std::size_t arm = 0; arm < body_.arms.size(); ++arm) {
-    HoldTrunk(arm, leader, rules, frame_rate_hz, given, follower);
-  }
-}
-
-void Partner::HoldTrunk(std::size_t arm, const motion::Poses& leader, const ContactRules& rules,
-                        double frame_rate_hz, int given, motion::Poses* follower) const {
-  const body::Limb& limb = body_.arms[arm];
-  const int frames = follower->frame_count();
-  motion::Poses weights(frames, 1);  // x
-  std::vector<Vec3> places;
-  bool holds = false;
-  for (int t = 0; t < frames; ++t) {
-    const TrunkHold& hold = rules[static_cast<std::size_t>(t)].holds[arm];
-    places.push_back(TrunkAxesOf(skeleton_, body_, leader[t]).WorldOf(hold.place));
-    const float apart = Norm(Level(leader.at(t, skeleton_.root) - follower->at(t, skeleton_.root)));
-    weights.at(t, 0).x = hold.weight * Nearness(apart, kEmbraced, kApart) *
-                         Nearness(Distance(places.back(), follower->at(t, limb.end)), kHeld, kFree);
-    holds = holds || weights.at(t, 0).x > 0;
-  }
-  if (!holds) return;
-  weights = motion::GaussianFilter(weights, kHoldSeconds * frame_rate_hz);
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<double> pulls;
-    std::vector<Vec3> wishes;
-    for (int t = 0; t < frames; ++t) {
-      const Vec3 shoulder = follower->at(t, limb.upper);
-      const float reach = kAround * body::LengthOf(limb, (*follower)[t]);
-      const Vec3 place = shoulder + Within(places[static_cast<std::size_t>(t)] - shoulder, reach);
-      const float weight = weights.at(t, 0).x, pull = weight + static_cast<float>(kIdle);
-      pulls.push_back(double{pull});
-      wishes.push_back((place - follower->at(t, limb.end)) * (weight / pull));
-    }
-    const std::vector<Vec3> ways =
-        SmoothShift({frame_rate_hz, kHoldSeconds, kNear, given}, pulls, wishes);
-    for (int t = given; t < frames; ++t) {
-      MoveHand(limb, ways[static_cast<std::size_t>(t)], (*follower)[t]);
-    }
-  }
-}
-
-// An elbow without a side of its own points down and back.
-void Partner::MoveHand(const body::Limb& arm, Vec3 way, absl::Span<Vec3> pose) const {
-  const Vec3 bend =
-      body::BendOf(arm, pose) - FacingOf(skeleton_, body_, pose) * 0.02f - kUp * 0.02f;
-  body::ReachBent(arm, JointAt(pose, arm.end) + way, bend, pose);
-}
-
-void Partner::MoveHands(const std::vector<Meeting>& meetings, const motion::Poses& leader,
-                        const ContactRules& rules, double frame_rate_hz, int given,
-                        motion::Poses* follower) const {
-  for (const body::Limb& arm : body_.arms) {
+  // To the hands that it meets, and out of the leader.
+  void MoveHand(const body::Limb& arm, const std::vector<Meeting>& meetings) {
     std::vector<Vec3> wishes;
     bool moves = false;
-    for (int t = 0; t < follower->frame_count(); ++t) {
-      const std::size_t at = static_cast<std::size_t>(t);
+    for (int t = 0; t < frames_; ++t) {
       Vec3 wish;
-      const Vec3 hand = follower->at(t, arm.end);
-      for (const Capsule& part : CoreOf(skeleton_, body_, leader[t])) {
+      const Vec3 hand = follower_.at(t, arm.end);
+      for (const Capsule& part : CoreOf(skeleton_, body_, leader_[t])) {
         const motion::ClosestPoints closest = motion::FindClosestPoints(
-            part.from, part.to, hand, Lerp(hand, follower->at(t, arm.middle), 0.5f));
+            part.from, part.to, hand, Lerp(hand, follower_.at(t, arm.middle), 0.5f));
         const float depth =
             part.radius + kHandRadius - kSoft - static_cast<float>(closest.distance);
         if (depth > 0) {
-          wish += Unit(closest.on_b - closest.on_a) * (depth * (1 - rules[at].overlap));
+          wish += Unit(closest.on_b - closest.on_a) * (depth * (1 - RuleAt(t).overlap));
         }
       }
       for (const Meeting& meeting : meetings) {
         if (meeting.follower != &arm) continue;
-        wish +=
-            WayToMeet(meeting, leader, rules[at].hands_metres, t, *follower) * meeting.weights[at];
+        const Vec3 way = leader_.at(t, meeting.leader->end) - hand;
+        wish += Unit(way) * std::max(0.0f, Norm(way) - RuleAt(t).hands_metres) *
+                meeting.weights[static_cast<std::size_t>(t)];
       }
       moves = moves || wish != Vec3{};
       wishes.push_back(wish);
     }
-    if (!moves) continue;
-    const std::vector<Vec3> ways =
-        SmoothShift({frame_rate_hz, kHandSeconds, kNear, given}, WeightsOf(wishes), wishes);
-    for (int t = given; t < follower->frame_count(); ++t) {
-      MoveHand(arm, ways[static_cast<std::size_t>(t)], (*follower)[t]);
+    if (moves) MoveHand(arm, SmoothShift(Cost(kHandSeconds), WeightsOf(wishes), wishes));
+  }
+
+  // An elbow without a side of its own points down and back.
+  void MoveHand(const body::Limb& arm, const std::vector<Vec3>& ways) {
+    for (int t = encounter_.given; t < frames_; ++t) {
+      const absl::Span<Vec3> pose = follower_[t];
+      const Vec3 bend =
+          body::BendOf(arm, pose) - FacingOf(skeleton_, body_, pose) * 0.02f - kUp * 0.02f;
+      body::ReachBent(arm, JointAt(pose, arm.end) + ways[static_cast<std::size_t>(t)], bend, pose);
     }
   }
+
+  const Encounter& encounter_;
+  const motion::Skeleton& skeleton_;
+  const body::Body& body_;
+  const motion::Poses& leader_;
+  const double rate_;
+  motion::Poses& follower_;
+  const int frames_;
+};
+
+}  // namespace
+
+void PlaceBody(const Encounter& encounter, motion::Poses* follower) {
+  Correction correction(encounter, follower);
+  correction.FaceLeader();
+  correction.MoveBody();
+}
+
+void PlaceHands(const Encounter& encounter, motion::Poses* follower) {
+  Correction correction(encounter, follower);
+  correction.MeetHands();
+  for (std::size_t arm = 0; arm < encounter.body.arms.size(); ++arm) correction.HoldTrunk(arm);
 }
 
 }  // namespace duet::solver

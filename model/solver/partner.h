@@ -43,56 +43,24 @@ struct ContactRule {
 };
 using ContactRules = std::vector<ContactRule>;  // [frames]
 
-// What a follower owes its leader: not to stand in it, not to lose it, to face it, to meet its
-// hand. Corrections are smooth and are 0 in the given frames. World metres, y up.
-class Partner {
- public:
-  // `skeleton` and `body` outlive this. Requires hips, two shoulders, a chest and two legs.
-  Partner(const motion::Skeleton& skeleton, const body::Body& body)
-      : skeleton_(skeleton), body_(body) {}
-
-  // Turns and moves the whole follower along the floor. Shapes: rules [frames].
-  void PlaceBody(const motion::Poses& leader, const ContactRules& rules, double frame_rate_hz,
-                 int given, motion::Poses* follower) const;
-
-  // Moves the follower's hands: to those that they meet, out of the leader, and around the leader.
-  void PlaceHands(const motion::Poses& leader, const ContactRules& rules, double frame_rate_hz,
-                  int given, motion::Poses* follower) const;
-
- private:
-  // A hand of the leader that is met, by which hand, and how much in each frame.
-  struct Meeting {
-    const body::Limb* leader = nullptr;
-    const body::Limb* follower = nullptr;
-    std::vector<float> weights;
-  };
-  // One for each hand of the leader that is offered at any time, and more than the other one.
-  std::vector<Meeting> FindMeetings(const motion::Poses& leader, const ContactRules& rules,
-                                    double frame_rate_hz, const motion::Poses& follower) const;
-  // The hand that is nearest to the leader's while that is met.
-  const body::Limb* NearestArm(const Meeting& meeting, const motion::Poses& leader,
-                               const motion::Poses& follower) const;
-  void MoveHands(const std::vector<Meeting>& meetings, const motion::Poses& leader,
-                 const ContactRules& rules, double frame_rate_hz, int given,
-                 motion::Poses* follower) const;
-  // Brings a hand to where it rests on the leader's trunk, where both people are close and the hand
-  // is already near. Weights and reach are smooth: rounding must not become a motion.
-  void HoldTrunk(std::size_t arm, const motion::Poses& leader, const ContactRules& rules,
-                 double frame_rate_hz, int given, motion::Poses* follower) const;
-  void MoveHand(const body::Limb& arm, motion::Vec3 way, absl::Span<motion::Vec3> pose) const;
-  // The way of the hand in a frame until it meets the leader's.
-  motion::Vec3 WayToMeet(const Meeting& meeting, const motion::Poses& leader, float metres, int t,
-                         const motion::Poses& follower) const;
-  void FaceLeader(const motion::Poses& leader, const ContactRules& rules, double frame_rate_hz,
-                  int given, motion::Poses* follower) const;
-  motion::Vec3 WayForHand(const Meeting& meeting, const motion::Poses& leader,
-                          const ContactRules& rules, int t, const motion::Poses& follower) const;
-  float Overlap(absl::Span<const motion::Vec3> leader, absl::Span<const motion::Vec3> follower,
-                float allowed) const;
-
-  const motion::Skeleton& skeleton_;
-  const body::Body& body_;
+// A follower beside its leader. All members outlive its use. The skeleton has hips, two shoulders,
+// a chest and two legs. Shapes: rules [frames]. World metres, y up.
+struct Encounter {
+  const motion::Skeleton& skeleton;
+  const body::Body& body;
+  const motion::Poses& leader;
+  const ContactRules& rules;
+  double frame_rate_hz = 0;
+  int given = 0;  // the first frames of the follower, which stay as they are
 };
+
+// What a follower owes its leader: not to stand in it, not to lose it, to face it. Turns and moves
+// the whole follower along the floor. The correction is smooth.
+void PlaceBody(const Encounter& encounter, motion::Poses* follower);
+
+// Moves the follower's hands, smoothly: to those that they meet, out of the leader, and around the
+// leader in an embrace.
+void PlaceHands(const Encounter& encounter, motion::Poses* follower);
 
 // How far the follower is turned away from its leader in each frame: the angle about the vertical
 // from where it faces to where its leader is, by the means of both over about half a second.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "model/engine/standard_window.h"
+#include "model/engine/windows.h"
 #include "model/motion/filter.h"
 #include "model/network/batch.h"
 #include "model/training/flow_augment.h"

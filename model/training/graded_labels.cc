@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "model/engine/standard_window.h"
+#include "model/engine/windows.h"
 #include "model/motion/resample.h"
 #include "model/training/sampler.h"
 

@@ -11,7 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "model/base/angle.h"
 #include "model/engine/network_synthesizer.h"
-#include "model/engine/standard_window.h"
+#include "model/engine/windows.h"
 #include "model/motion/filter.h"
 #include "model/motion/posture.h"
 #include "model/motion/resample.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "model/engine/standard_window.h"
+#include "model/engine/windows.h"
 
 namespace duet::training {
 namespace {

@@ -19,25 +19,19 @@ motion::Poses Away(float x, float z) {
   return Changed(Puppet(), [x, z](int, Vec3 joint) { return joint + Vec3{x, 0, z}; });
 }
 
-int Best(const std::vector<motion::Poses>& followers, float variety, int settled = 0) {
-  return CandidateJudge(motion::SbuSkeleton()).Best(Puppet(), followers, settled, kRate, variety);
+int Best(const std::vector<motion::Poses>& followers, int settled = 0) {
+  return CandidateJudge(motion::SbuSkeleton()).Best(Puppet(), followers, settled, kRate);
 }
 
 TEST(CandidateJudge, LeavesOutFaults) {
   motion::Poses twisted = Away(0, 1);
   for (int t = 0; t < kFrames; ++t) std::swap(twisted.at(t, 9), twisted.at(t, 12));
-  EXPECT_EQ(Best({twisted, Away(0, 1)}, 1), 1);
-  EXPECT_EQ(Best({Away(0.02f, 0), Away(0, 1)}, 1), 1);  // inside the leader
-  EXPECT_EQ(Best({Away(0, 1), twisted}, 1), 0);
+  EXPECT_EQ(Best({twisted, Away(0, 1)}), 1);
+  EXPECT_EQ(Best({Away(0.02f, 0), Away(0, 1)}), 1);  // inside the leader
+  EXPECT_EQ(Best({Away(0, 1), twisted}), 0);
 }
 
-TEST(CandidateJudge, TheFirstOfEquals) { EXPECT_EQ(Best({Away(0, 1), Away(1, 1)}, 1), 0); }
-
-TEST(CandidateJudge, BelowVarietyOneTheMostTypicalWins) {
-  const std::vector<motion::Poses> followers = {Away(0.9f, 1), Away(0, 1), Away(-0.1f, 1)};
-  EXPECT_EQ(Best(followers, 1), 0);
-  EXPECT_EQ(Best(followers, 0), 1);
-}
+TEST(CandidateJudge, TheFirstOfEquals) { EXPECT_EQ(Best({Away(0, 1), Away(1, 1)}), 0); }
 
 TEST(CandidateJudge, HandsThatAreToMeetDo) {
   const motion::Poses leader = Puppet([](double, authoring::PuppetPose* pose) {
@@ -47,10 +41,10 @@ TEST(CandidateJudge, HandsThatAreToMeetDo) {
   std::vector<motion::Poses> followers = {Away(0, 1), Away(0, 1)};
   for (int t = 0; t < kFrames; ++t) followers[1].at(t, 8) = leader.at(t, 8);
   const CandidateJudge judge(motion::SbuSkeleton());
-  EXPECT_EQ(judge.Best(leader, followers, 0, kRate, 1), 0);
+  EXPECT_EQ(judge.Best(leader, followers, 0, kRate), 0);
   const solver::ContactRules rules(kFrames, {0, 1, 0.1f});
-  EXPECT_EQ(judge.Best(leader, followers, 0, kRate, 1, {}, rules), 1);
-  EXPECT_EQ(judge.Best(leader, followers, kFrames, kRate, 1, {}, rules), 0);
+  EXPECT_EQ(judge.Best(leader, followers, 0, kRate, {}, rules), 1);
+  EXPECT_EQ(judge.Best(leader, followers, kFrames, kRate, {}, rules), 0);
 }
 
 // A critic that finds followers the more captured the higher their joints are.
@@ -78,7 +72,7 @@ TEST(CandidateJudge, TheCriticDecidesBetweenFaultlessSamples) {
   const std::vector<float> labels(kFrames, 1);
   const auto best = [&](float factor, const motion::Poses& other) {
     return CandidateJudge(motion::SbuSkeleton(), LikesHeight(factor))
-        .Best(Puppet(), {low, other}, 0, kRate, 1, {}, {}, labels);
+        .Best(Puppet(), {low, other}, 0, kRate, {}, {}, labels);
   };
   EXPECT_EQ(best(1, high), 1);
   EXPECT_EQ(best(-1, high), 0);
@@ -90,14 +84,14 @@ TEST(CandidateJudge, TheCriticDecidesBetweenFaultlessSamples) {
 TEST(CandidateJudge, JudgesNothingInSettledFrames) {
   motion::Poses late = Away(0, 1);
   for (int t = 0; t < 10; ++t) std::swap(late.at(t, 9), late.at(t, 12));
-  EXPECT_EQ(Best({late, Away(0, 1)}, 1, 10), 0);
-  EXPECT_EQ(Best({late, Away(0, 1)}, 1, 0), 1);
+  EXPECT_EQ(Best({late, Away(0, 1)}, 10), 0);
+  EXPECT_EQ(Best({late, Away(0, 1)}, 0), 1);
 }
 
 TEST(CandidateJudge, ASkeletonWithoutLandmarksIsNotJudged) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   skeleton.hips.reset();
-  EXPECT_EQ(CandidateJudge(skeleton).Best(Puppet(), {Away(0, 0), Away(0, 1)}, 0, kRate, 1), 0);
+  EXPECT_EQ(CandidateJudge(skeleton).Best(Puppet(), {Away(0, 0), Away(0, 1)}, 0, kRate), 0);
 }
 
 TEST(CandidateSeed, TheFirstIsTheRequestsAndAllDiffer) {
@@ -107,13 +101,6 @@ TEST(CandidateSeed, TheFirstIsTheRequestsAndAllDiffer) {
     for (int n = 0; n < 16; ++n) seeds.insert(CandidateSeed(seed, n));
   }
   EXPECT_EQ(seeds.size(), 800u);
-}
-
-TEST(CandidateVariety, RisesOnlyForSeveralBelowOne) {
-  EXPECT_EQ(CandidateVariety(0, 1), 0);
-  EXPECT_EQ(CandidateVariety(0, 4), 0.5f);
-  EXPECT_EQ(CandidateVariety(1, 4), 1);
-  EXPECT_EQ(CandidateVariety(1.5f, 4), 1.5f);
 }
 
 }  // namespace

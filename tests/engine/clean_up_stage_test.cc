@@ -6,7 +6,6 @@
 
 #include "gtest/gtest.h"
 #include "model/engine/clip_synthesis.h"
-#include "model/engine/finishing.h"
 #include "model/engine/network_synthesizer.h"
 #include "model/motion/feet.h"
 #include "tests/engine/rule_network.h"
@@ -180,20 +179,6 @@ TEST(CleanUpStage, WindowsOfABatchHaveTheirOwnChoices) {
   EXPECT_EQ(*batch[1], cleaned);
   EXPECT_EQ(*batch[2], cleaned);
   EXPECT_EQ(*batch[3], plain);
-}
-
-TEST(CleanUpStage, AllWindowsOfAClipFollowItsRequest) {
-  for (const std::optional<bool> wanted : {std::optional<bool>(), {true}, {false}}) {
-    ClipRequest request{SwayingMotion(120, 15), 15,           LabelTrack(std::vector<float>(6, 0)),
-                        std::nullopt,           std::nullopt, {{}, wanted}};
-    ClipSynthesis clip(FakeDescription(), std::move(request));
-    ASSERT_GT(clip.window_count(), 1);
-    while (clip.HasNextWindow()) {
-      const SynthesisWindow window = clip.NextWindow();
-      EXPECT_EQ(window.options.clean_up, wanted);
-      clip.Accept(window.leader);
-    }
-  }
 }
 
 TEST(CleanUpStage, LeavesTheStartAndTheFramesThatTheCallerHas) {

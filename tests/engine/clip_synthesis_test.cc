@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -59,6 +61,16 @@ Outcome RunAll(const FakeSynthesizer& fake, ClipRequest request) {
   return run;
 }
 
+// Makes the answer of a fake change from window to window; the first is 1.
+void ChangeByWindow(std::function<motion::Vec3(motion::Vec3 leader, int window)> answer,
+                    FakeSynthesizer* fake) {
+  const auto window = std::make_shared<int>(0);
+  fake->on_batch = [=](absl::Span<const SynthesisWindow* const>) { ++*window; };
+  fake->answer = [=](motion::Vec3 leader, absl::Span<const float>) {
+    return answer(leader, *window);
+  };
+}
+
 // The answer of a network without a window limit, brought to the caller's rate.
 motion::Poses UnwindowedAnswer(const ClipRequest& request, double model_hz) {
   motion::Poses follower = Resample(request.leader, request.frame_rate_hz, model_hz);
@@ -113,11 +125,11 @@ INSTANTIATE_TEST_SUITE_P(Rates, ClipSynthesisAtRate,
 TEST(ClipSynthesis, KeepsTheNetworksOwnFramesAtItsOwnRate) {
   // Two windows that disagree by 10 m: only where they overlap may anything be mixed.
   FakeSynthesizer fake;
-  int window = 0;
-  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
-    return leader + motion::Vec3{10.0f * static_cast<float>(window), 0, 0};
-  };
+  ChangeByWindow(
+      [](motion::Vec3 leader, int window) {
+        return leader + motion::Vec3{10.0f * static_cast<float>(window), 0, 0};
+      },
+      &fake);
   const ClipRequest request = Request(70, 15);
   const Outcome run = RunAll(fake, request);
   ASSERT_EQ(run.windows.size(), 2u);  // frames 0 to 45 and 24 to 69
@@ -136,37 +148,18 @@ TEST(ClipSynthesis, KeepsTheNetworksOwnFramesAtItsOwnRate) {
   }
 }
 
-TEST(ClipSynthesis, MovesSmoothlyThroughWindowsThatDisagree) {
-  FakeSynthesizer fake;
-  int window = 0;
-  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
-    return leader + motion::Vec3{0.1f * static_cast<float>(window % 2), 0, 0};
-  };
-  for (int frames : {47, 60, 70, 78, 79, 100, 300}) {
-    const ClipRequest request = Request(frames, 15);
-    const Outcome run = RunAll(fake, request);
-    const absl::Span<const motion::Vec3> f = run.follower.all(), leader = request.leader.all();
-    for (std::size_t i = kJoints; i < f.size(); ++i) {
-      const motion::Vec3 extra = (f[i] - f[i - kJoints]) - (leader[i] - leader[i - kJoints]);
-      // The steepest step of a smoothstep over 15 frames or more, of a difference of 0.1 m. Clips
-      // that barely need a second or third window overlap more.
-      ASSERT_LT(Norm(extra), 0.1f * 1.6f / 15) << frames << " frames, frame " << i / kJoints;
-    }
-  }
-}
-
 TEST(ClipSynthesis, AHigherRateIsASplineThroughTheBlendedFrames) {
   // What was handed out early must fit what the cross-fade made of the frames behind it.
-  FakeSynthesizer fake;
-  int window = 0;
-  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
-    return leader + motion::Vec3{static_cast<float>(window % 3), 0, 0};
+  const auto run = [](const ClipRequest& request) {
+    FakeSynthesizer fake;
+    ChangeByWindow(
+        [](motion::Vec3 leader, int window) {
+          return leader + motion::Vec3{static_cast<float>(window % 3), 0, 0};
+        },
+        &fake);
+    return RunAll(fake, request).follower;
   };
-  const motion::Poses slow = RunAll(fake, Request(151, 15)).follower;
-  window = 0;
-  const motion::Poses fast = RunAll(fake, Request(601, 60)).follower;
+  const motion::Poses slow = run(Request(151, 15)), fast = run(Request(601, 60));
   motion::Poses wanted(601, kJoints);
   for (int t = 0; t < 601; ++t) SampleCubic(slow, t / 4.0, wanted[t]);
   ExpectNear(fast, wanted, 1e-5f);
@@ -176,16 +169,13 @@ TEST(ClipSynthesis, NeverTakesBackAFrame) {
   // The answer changes completely from window to window, yet a frame that was handed out depends
   // on earlier windows only: a run that is cut short gave the same frames.
   FakeSynthesizer fake;
-  int window = 0;
-  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
-    return leader * std::sin(static_cast<float>(window));
-  };
+  ChangeByWindow(
+      [](motion::Vec3 leader, int window) { return leader * std::sin(static_cast<float>(window)); },
+      &fake);
   const Outcome first = RunAll(fake, Request(300, 60));
-  window = 0;
-  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
-    return leader * (window == 1 ? std::sin(1.0f) : 50.0f);
-  };
+  ChangeByWindow([](motion::Vec3 leader,
+                    int window) { return leader * (window == 1 ? std::sin(1.0f) : 50.0f); },
+                 &fake);
   const Outcome second = RunAll(fake, Request(300, 60));
   const int handed_out = first.frames_after.front();
   ASSERT_GT(handed_out, 0);
@@ -315,11 +305,11 @@ class GradeAtRate : public ::testing::TestWithParam<double> {};
 TEST_P(GradeAtRate, IsThatOfTheFramesHandedOut) {
   // Leans into the leader and away again, so that some frames overlap and others do not.
   FakeSynthesizer fake;
-  int window = 0;
-  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
-  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
-    return leader + motion::Vec3{0, 0, 0.4f * static_cast<float>(window % 2)};
-  };
+  ChangeByWindow(
+      [](motion::Vec3 leader, int window) {
+        return leader + motion::Vec3{0, 0, 0.4f * static_cast<float>(window % 2)};
+      },
+      &fake);
   const ClipRequest request = Request(static_cast<int>(8 * GetParam()), GetParam());
   std::vector<ClipSynthesis> clips;
   clips.emplace_back(fake.description(), request);
@@ -489,17 +479,6 @@ TEST(ClipSynthesis, EstimatesTheDirectionThatARequestLacks) {
   }
 }
 
-TEST(ClipSynthesis, WhereNoWindowHasAStartEachIsEstimated) {
-  ModelDescription description = DirectedDescription();
-  description.accepts_follower_start = description.samples = false;
-  const Outcome run = RunAll(FakeSynthesizer(description), Request(120, 15));
-  for (const SynthesisWindow& window : run.windows) {
-    EXPECT_EQ(DirectionTold(window),
-              *EstimatePartnerDirection(*description.partner_direction, description.skeleton,
-                                        window.leader));
-  }
-}
-
 TEST(ClipSynthesis, DirectionOfTheRequestOverridesTheEstimate) {
   const FakeSynthesizer fake(DirectedDescription());
   ClipRequest told = Request(30, 15);
@@ -545,20 +524,12 @@ TEST(LabelTrack, OneVectorHoldsThroughout) {
   for (double frame : {0.0, 0.25, 7.0, 1e9}) EXPECT_THAT(At(track, frame), ElementsAre(1, -0.5f));
 }
 
-TEST(LabelTrack, HitsEveryKeyframe) {
-  EXPECT_THAT(At(ThreeKeyframes(), 10), ElementsAre(1, 0));
-  EXPECT_THAT(At(ThreeKeyframes(), 20), ElementsAre(0, 2));
-  EXPECT_THAT(At(ThreeKeyframes(), 21), ElementsAre(-1, 2));
-}
-
-TEST(LabelTrack, IsLinearBetweenKeyframes) {
-  EXPECT_THAT(At(ThreeKeyframes(), 12.5), ElementsAre(0.75f, 0.5f));
-  EXPECT_THAT(At(ThreeKeyframes(), 20.5), ElementsAre(-0.5f, 2));
-}
-
-TEST(LabelTrack, HoldsBeforeTheFirstAndAfterTheLast) {
+TEST(LabelTrack, IsLinearBetweenKeyframesAndHeldBeforeAndAfter) {
   EXPECT_THAT(At(ThreeKeyframes(), 0), ElementsAre(1, 0));
   EXPECT_THAT(At(ThreeKeyframes(), 9.9), ElementsAre(1, 0));
+  EXPECT_THAT(At(ThreeKeyframes(), 12.5), ElementsAre(0.75f, 0.5f));
+  EXPECT_THAT(At(ThreeKeyframes(), 20), ElementsAre(0, 2));
+  EXPECT_THAT(At(ThreeKeyframes(), 20.5), ElementsAre(-0.5f, 2));
   EXPECT_THAT(At(ThreeKeyframes(), 500), ElementsAre(-1, 2));
 }
 

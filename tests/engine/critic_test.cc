@@ -19,9 +19,9 @@ using test::Puppet;
 
 constexpr int kClasses = 2;
 
-std::vector<float> Labels(int frames = kFrames) {
+std::vector<float> Labels() {
   std::vector<float> labels;
-  for (int t = 0; t < frames; ++t) labels.insert(labels.end(), {0.5f, -1});
+  for (int t = 0; t < kFrames; ++t) labels.insert(labels.end(), {0.5f, -1});
   return labels;
 }
 
@@ -61,15 +61,6 @@ TEST(CriticInput, DoesNotDependOnPlaceOrDirection) {
   const std::vector<float> elsewhere = Input(moved(Puppet()), moved(Follower()));
   ASSERT_EQ(input.size(), elsewhere.size());
   for (std::size_t i = 0; i < input.size(); ++i) EXPECT_NEAR(input[i], elsewhere[i], 1e-4);
-}
-
-TEST(CriticInput, OneShortWindowHasFrames) {
-  Poses leader = Puppet(), follower = Follower();
-  leader.Resize(2);
-  follower.Resize(2);
-  const std::vector<float> input =
-      CriticInput(motion::SbuSkeleton(), kRate, leader, follower, Labels(2));
-  EXPECT_EQ(input.size(), static_cast<std::size_t>(2 * Columns()));
 }
 
 // Weights by a rule, large enough that every layer matters.

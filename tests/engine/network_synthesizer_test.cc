@@ -10,7 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
-#include "model/engine/standard_window.h"
+#include "model/engine/windows.h"
 #include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
 #include "model/solver/partner.h"
@@ -87,32 +87,21 @@ TEST(NetworkSynthesizer, TheNetworkSeesTheStandardFrame) {
   SynthesisWindow window = Window();
   window.partner_direction = motion::Vec3{1, 0, 0};
   window.start = FollowerStart{SwayingPose(3)[2], SwayingPose(3)};
+  window.settled = SwayingMotion(4, 15);
+  window.options.sampling = {41, 0.25f};
   for (const auto origin :
        {motion::StandardOrigin::kEveryFrame, motion::StandardOrigin::kFirstFrame}) {
     const NetworkInput seen = SeenByTheNetwork(window, origin);
     const motion::Standardisation frame(motion::SbuSkeleton(), window.leader,
                                         motion::FacingYaw({1, 0, 0}), origin);
     EXPECT_EQ(seen.leader, frame.Apply(window.leader));
+    EXPECT_EQ(seen.settled, frame.Apply(window.settled));
     EXPECT_EQ(seen.labels, window.labels);
     EXPECT_EQ(seen.start->root, frame.Apply(window.start->root));
     ASSERT_EQ(seen.start->pose.size(), 15u);
     EXPECT_EQ(seen.start->pose[5], frame.Apply(window.start->pose[5]));
-  }
-}
-
-TEST(NetworkSynthesizer, TheNetworkSeesSamplingAndSettledFrames) {
-  SynthesisWindow window = Window();
-  window.options.sampling = {41, 0.25f};
-  window.settled = SwayingMotion(4, 15);
-  window.start = FollowerStart{window.settled.at(0, 2), SwayingPose(0)};
-  for (const auto origin :
-       {motion::StandardOrigin::kEveryFrame, motion::StandardOrigin::kFirstFrame}) {
-    const NetworkInput seen = SeenByTheNetwork(window, origin);
     EXPECT_EQ(seen.sampling.seed, 41u);
     EXPECT_EQ(seen.sampling.variety, 0.25f);
-    const motion::Standardisation frame =
-        WindowStandardisation(motion::SbuSkeleton(), window, origin);
-    EXPECT_EQ(seen.settled, frame.Apply(window.settled));
   }
 }
 
@@ -202,28 +191,6 @@ TEST(NetworkSynthesizer, LimbsWithoutAPoseHaveTheModelsRatiosToThoseOfTheLeader)
   const std::vector<motion::Vec3> pose = SwayingPose(0);
   window.start = FollowerStart{pose[2], pose};
   expect(motion::Poses(15, pose), 1, 1);
-}
-
-TEST(NetworkSynthesizer, RaisesACrouchingFollower) {
-  const motion::Poses crouching =
-      test::Puppet([](double, authoring::PuppetPose* pose) { pose->torso.y = 0.85; }, 45);
-  const auto height = [&](bool clean_up, std::optional<int64_t> first_frame) {
-    SynthesisWindow window = Window(45);
-    window.leader = test::Puppet({}, 45);
-    window.options.clean_up = clean_up;
-    window.options.sampling.first_frame = first_frame;
-    const auto model = Model(
-        [&](Inputs inputs) {
-          std::vector<motion::Poses> followers(inputs.size(), crouching);
-          for (motion::Vec3& p : followers[0].all()) p += motion::Vec3{0, 0, -1};
-          return followers;
-        },
-        {}, test::SamplingDescription());
-    const WindowResult result = RunOne(*model, window);
-    return result.ok() ? result->at(22, motion::SbuSkeleton().root).y : 0;
-  };
-  EXPECT_GT(height(true, {}), height(false, {}) + 0.03f);
-  EXPECT_GT(height(true, 0), height(false, 0) + 0.03f);  // in live windows as well
 }
 
 // How far the follower of a window is turned away at the end, degrees, if the network turns it away

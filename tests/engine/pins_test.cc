@@ -162,13 +162,6 @@ TEST(PinsOfAClip, WithoutPinsNotABitChanges) {
   }
 }
 
-TEST(PinsOfAClip, TheSameRequestGivesTheSameBits) {
-  const std::unique_ptr<Synthesizer> model = Model();
-  const Pins pins = {Reachable(Synthesized(*model, Request(100, 24)).follower, 55)};
-  EXPECT_EQ(Synthesized(*model, Request(100, 24, pins)).follower,
-            Synthesized(*model, Request(100, 24, pins)).follower);
-}
-
 TEST(PinsOfAClip, AreHonouredWithoutCleanUpAndByModelsWithOneAnswer) {
   const std::unique_ptr<Synthesizer> model = Model(FakeDescription());
   ClipRequest request = Request(40, 15);

@@ -1,6 +1,5 @@
-#include "model/engine/standard_window.h"
-
 #include "gtest/gtest.h"
+#include "model/engine/windows.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::engine {

@@ -41,17 +41,6 @@ TEST(FollowerSolverTest, APersonWhoStandsHardlyMoves) {
   EXPECT_LT(test::LargestDistance(Solved(Puppet()), Puppet()), 0.03f);
 }
 
-TEST(FollowerSolverTest, NoiseComesOutAsABodyThatStands) {
-  const motion::Poses noisy = WithCameraNoise(WalkingPerson(4));
-  const motion::Poses solved = Solved(noisy);
-  const auto width = [&](int t) {
-    return Distance(solved.at(t, kLeftHip), solved.at(t, kRightHip));
-  };
-  for (int t = 1; t < solved.frame_count(); ++t) EXPECT_NEAR(width(t), width(0), 1e-3f) << t;
-  EXPECT_LT(SlowerFoot(solved), 0.5 * SlowerFoot(noisy));
-  EXPECT_LT(BodyModel::BoneNoise(motion::SbuSkeleton(), solved), 1e-4);
-}
-
 TEST(FollowerSolverTest, FeetThatWereMovedDoNotBendTheKnees) {
   // Walks in steps of its own: the network's feet slide.
   const motion::Poses sliding = test::Changed(Puppet(), [](int t, Vec3 joint) {

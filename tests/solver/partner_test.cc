@@ -21,7 +21,15 @@ constexpr int kTorso = 2, kRightHand = 8;
 struct Fixture {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   body::Body body = body::FindBody(skeleton);
-  Partner partner{skeleton, body};
+
+  void Body(const motion::Poses& leader, const ContactRules& rules, motion::Poses* follower,
+            int given = 0) const {
+    PlaceBody({skeleton, body, leader, rules, kRate, given}, follower);
+  }
+  void Hands(const motion::Poses& leader, const ContactRules& rules, motion::Poses* follower,
+             int given = 0) const {
+    PlaceHands({skeleton, body, leader, rules, kRate, given}, follower);
+  }
 };
 
 // Faces the leader from `metres` away, turned by `degrees` from there.
@@ -43,16 +51,16 @@ TEST(PartnerTest, LeavesPeopleWhoStandApartFaceToFace) {
   const Fixture f;
   motion::Poses follower = Opposite(1);
   const motion::Poses before = follower;
-  f.partner.PlaceBody(Puppet(), Rules({0, 0, 0, 60}), kRate, 0, &follower);
-  f.partner.PlaceHands(Puppet(), Rules(), kRate, 0, &follower);
+  f.Body(Puppet(), Rules({0, 0, 0, 60}), &follower);
+  f.Hands(Puppet(), Rules(), &follower);
   EXPECT_LT(test::LargestDistance(follower, before), 0.001f);
 }
 
 TEST(PartnerTest, PartsBodiesUnlessTheyMayOverlap) {
   const Fixture f;
   motion::Poses parted = Opposite(0.1), hugging = parted;
-  f.partner.PlaceBody(Puppet(), Rules(), kRate, 0, &parted);
-  f.partner.PlaceBody(Puppet(), Rules({1}), kRate, 0, &hugging);
+  f.Body(Puppet(), Rules(), &parted);
+  f.Body(Puppet(), Rules({1}), &hugging);
   EXPECT_GT(Apart(Puppet(), parted, 20), 0.17f);
   EXPECT_GT(Apart(Puppet(), hugging, 20), 0.15f);
   EXPECT_LE(Apart(Puppet(), hugging, 20), Apart(Puppet(), parted, 20));
@@ -61,7 +69,7 @@ TEST(PartnerTest, PartsBodiesUnlessTheyMayOverlap) {
 TEST(PartnerTest, ComesBackFromFarAway) {
   const Fixture f;
   motion::Poses follower = Opposite(4);
-  f.partner.PlaceBody(Puppet(), Rules(), kRate, 0, &follower);
+  f.Body(Puppet(), Rules(), &follower);
   EXPECT_LT(Apart(Puppet(), follower, 20), 2.8f);
 }
 
@@ -69,7 +77,7 @@ TEST(PartnerTest, TurnsBackAsFarAsTheRuleSays) {
   const Fixture f;
   const auto away = [&](ContactRule rule) {
     motion::Poses follower = Opposite(1, 120);
-    f.partner.PlaceBody(Puppet(), Rules(rule), kRate, 0, &follower);
+    f.Body(Puppet(), Rules(rule), &follower);
     return std::abs(DegreesAway(f.skeleton, f.body, Puppet(), follower, kRate)[30]);
   };
   EXPECT_NEAR(away({0, 0, 0, 180}), 120, 1);
@@ -84,8 +92,8 @@ TEST(PartnerTest, MeetsAHandThatIsOffered) {
   const auto apart = [&](float hands) {
     const motion::Poses before = Opposite(1.1);
     motion::Poses follower = before;
-    f.partner.PlaceBody(leader, Rules({0, hands, 0.1f}), kRate, 0, &follower);
-    f.partner.PlaceHands(leader, Rules({0, hands, 0.1f}), kRate, 0, &follower);
+    f.Body(leader, Rules({0, hands, 0.1f}), &follower);
+    f.Hands(leader, Rules({0, hands, 0.1f}), &follower);
     EXPECT_LT(test::LargestLengthChange(follower, before), 1e-4f);
     const Vec3 hand = leader.at(25, kRightHand);
     return std::min(Distance(hand, follower.at(25, kRightHand)),
@@ -111,7 +119,7 @@ struct Embrace {
     }
   }
   motion::Poses Held(motion::Poses follower) const {
-    f.partner.PlaceHands(leader, Rules(rule), kRate, 0, &follower);
+    f.Hands(leader, Rules(rule), &follower);
     return follower;
   }
 };
@@ -144,8 +152,8 @@ TEST(PartnerTest, LeavesTheGivenFrames) {
   const Fixture f;
   motion::Poses follower = Opposite(0.1, 120);
   const motion::Poses before = follower;
-  f.partner.PlaceBody(Puppet(), Rules({0, 1, 0.1f, 50}), kRate, 12, &follower);
-  f.partner.PlaceHands(Puppet(), Rules({0, 1, 0.1f, 50}), kRate, 12, &follower);
+  f.Body(Puppet(), Rules({0, 1, 0.1f, 50}), &follower, 12);
+  f.Hands(Puppet(), Rules({0, 1, 0.1f, 50}), &follower, 12);
   for (int t = 0; t < 12; ++t) EXPECT_EQ(follower[t], before[t]) << t;
   EXPECT_NE(follower[30], before[30]);
   EXPECT_LT(test::LargestStep(follower), 0.15f);

@@ -43,11 +43,6 @@ TEST(SolvePersonTest, APersonWithABodyMovesLittle) {
   EXPECT_NEAR(KneeDegrees(solved), KneeDegrees(person), 2);
 }
 
-TEST(SolvePersonTest, SolvingAgainChangesLittle) {
-  const Poses solved = Solved(WithCameraNoise(WalkingPerson(6)));
-  EXPECT_LT(MeanDistance(Solved(solved), solved), 0.01);
-}
-
 TEST(SolvePersonTest, FeetStandOnTheFloorThatIsAskedFor) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const Poses person = WalkingPerson(4);
@@ -55,12 +50,6 @@ TEST(SolvePersonTest, FeetStandOnTheFloorThatIsAskedFor) {
   const absl::StatusOr<Poses> solved = SolvePerson(skeleton, person, kRate, floor);
   ASSERT_TRUE(solved.ok()) << solved.status();
   EXPECT_NEAR(StandingHeight(skeleton, *solved), floor, 0.01);
-}
-
-TEST(SolvePersonTest, OneFrameIsAPose) {
-  Poses person = WalkingPerson(1);
-  person.Resize(1);
-  EXPECT_EQ(Solved(person).frame_count(), 1);
 }
 
 TEST(SolvePersonTest, PeopleOfADepthCameraGetBodiesAndKeepTheirKnees) {

@@ -68,13 +68,5 @@ TEST(PinsTest, GivenFramesStay) {
   for (int t = 0; t < 10; ++t) EXPECT_EQ(later[t], Puppet()[t]) << t;
 }
 
-TEST(PinsTest, MeanDistanceCountsThePinsOfTheFrames) {
-  const Vec3 torso = Puppet().at(20, kTorso);
-  EXPECT_NEAR(
-      MeanPinDistance({{kTorso, 20, torso + Vec3{0.2f, 0, 0}}, {kTorso, 99, {}}}, Puppet(), 0), 0.2,
-      1e-6);
-  EXPECT_EQ(MeanPinDistance({{kTorso, 2, {}}}, Puppet(), 10), 0);
-}
-
 }  // namespace
 }  // namespace duet::solver

@@ -37,20 +37,6 @@ TEST(SmoothCorrectionTest, NoOtherCorrectionCostsLess) {
   }
 }
 
-TEST(SmoothCorrectionTest, ALastingWishIsNearlyFulfilled) {
-  const std::vector<double> best =
-      SmoothCorrection(kCost, std::vector<double>(50, 1), std::vector<double>(50, 0.5));
-  for (const double value : best) EXPECT_NEAR(value, 0.5 / 1.02, 1e-6);
-}
-
-TEST(SmoothCorrectionTest, FramesWithoutAWishLieBetweenTheirNeighbours) {
-  std::vector<double> weights(30, 1), wishes(30, 0);
-  for (std::size_t t = 10; t < 20; ++t) weights[t] = 0;
-  for (std::size_t t = 20; t < 30; ++t) wishes[t] = 1;
-  const std::vector<double> best = SmoothCorrection(kCost, weights, wishes);
-  for (std::size_t t = 11; t < 20; ++t) EXPECT_GT(best[t], best[t - 1]) << t;
-}
-
 TEST(SmoothCorrectionTest, GivenFramesAreNotCorrectedAndTheRestLeavesThemSmoothly) {
   CorrectionCost cost = kCost;
   cost.given = 10;
@@ -67,13 +53,6 @@ TEST(SmoothCorrectionTest, ThreeCoordinatesAreSolvedAsOne) {
   const std::vector<motion::Vec3> all = SmoothShift(kCost, weights, wishes);
   const std::vector<double> y = SmoothCorrection(kCost, weights, {0, 0, 1, 3});
   for (std::size_t t = 0; t < 4; ++t) EXPECT_NEAR(all[t].y, y[t], 1e-6) << t;
-}
-
-TEST(SmoothCorrectionTest, OneFrameAndNoFrames) {
-  EXPECT_TRUE(SmoothCorrection(kCost, {}, {}).empty());
-  const std::vector<double> one = SmoothCorrection(kCost, {1}, {0.3});
-  ASSERT_EQ(one.size(), 1u);
-  EXPECT_NEAR(one[0], 0.3 / 1.02, 1e-9);
 }
 
 }  // namespace
