@@ -69,7 +69,7 @@ TEST_F(UsageTest, ErrorsNameTheFlagWhatIsExpectedAndWhatIsGiven) {
       {{"--label", "kick="}, "--label: expected CLASS or CLASS=WEIGHT"},
       {{"hug=1"}, "hug=1"},
       {{"--keyframe", "0:kick=1"}, "excludes"},
-      {{"--leader-side", "up"}, "--leader-side: up not in"},
+      {{"--leader-side", "up"}, "--leader-side: expected left or right, got \"up\""},
       {{"--input-format", "mov"}, "--input-format: expected "},
       {{"--frame-rate", "-15"}, "--frame-rate: expected a number above 0, got \"-15\""},
       {{"--metres-per-unit", "inf"}, "--metres-per-unit: expected a number above 0, got \"inf\""},
