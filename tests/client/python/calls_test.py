@@ -252,7 +252,6 @@ class WaitingTest(Calls, Waiting, unittest.TestCase):
         self.calls(script, calls)
         self.assertEqual(len(script.requests), 1)
 
-
     def test_closing_the_client_ends_its_calls(self):
         go_on = threading.Event()
         script = Script(support.held_reply(self.leader, threading.Event(), go_on))
