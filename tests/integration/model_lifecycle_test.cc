@@ -29,7 +29,7 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {
@@ -40,10 +40,6 @@ namespace admin = ::duet::admin::v1;
 
 using nlohmann::json;
 using server::registry::ModelSource;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // A server over a repository of made-up checkpoints: a manifest is a word, "good", "bad", "gated"
 // (its loading waits at the gate) or "held" (its evaluations wait at held_model's).

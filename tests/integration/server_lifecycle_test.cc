@@ -22,16 +22,10 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 using absl::StatusCode;
 using nlohmann::json;

@@ -30,6 +30,7 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {
@@ -38,9 +39,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 TEST(ServerProcessTest, ServesWithoutAnyModelFlagAndStopsOnSigterm) {
   Process server(Flags());
@@ -204,7 +202,7 @@ TEST(ServerProcessTest, ReportsItsStateToSystemd) {
   unsetenv("NOTIFY_SOCKET");
   EXPECT_EQ(socket.Receive(), "READY=1\nSTATUS=serving 1 models");
   server.Signal(SIGHUP);
-  EXPECT_THAT(socket.Receive(), testing::MatchesRegex("RELOADING=1\nMONOTONIC_USEC=[0-9]+"));
+  EXPECT_THAT(socket.Receive(), MatchesRegex("RELOADING=1\nMONOTONIC_USEC=[0-9]+"));
   EXPECT_EQ(socket.Receive(), "READY=1\nSTATUS=serving 1 models");
   server.Signal(SIGTERM);
   EXPECT_EQ(socket.Receive(), "STOPPING=1");
@@ -363,7 +361,7 @@ TEST(ServerProcessTest, SigtermWhileLoadingStopsAfterTheCheckpointUnderWay) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   close(manifest);
   EXPECT_EQ(server.Wait(), 0);
-  EXPECT_THAT(server.Rest(), testing::Not(HasSubstr("model_loaded")));
+  EXPECT_THAT(server.Rest(), Not(HasSubstr("model_loaded")));
 }
 
 // The most memory that a process has held, in bytes.

@@ -17,6 +17,7 @@
 #include "tests/integration/server_process.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/sample_request.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {
@@ -25,8 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 // A call that asks the fake engine to block a thread for ever (fake_server.cc); nobody waits for
 // its answer.

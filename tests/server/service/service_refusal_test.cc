@@ -4,7 +4,6 @@
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -125,17 +124,6 @@ TEST(ServiceRefusalTest, FullQueueRejectsBeforeTheHeader) {
   EXPECT_EQ(service.running.admission().calls(), 0u) << "the place is free again";
 }
 
-TEST(ServiceRefusalTest, RejectedRequestReleasesItsPlace) {
-  RunningService::Setup setup;
-  setup.admission.max_calls = 1;
-  RunningService running(setup);
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(Call(running.stub(), v1::SynthesizeRequest()).status.error_code(),
-              grpc::StatusCode::INVALID_ARGUMENT);
-  }
-  EXPECT_TRUE(Call(running.stub(), SampleRequest()).status.ok());
-}
-
 TEST(ServiceRefusalTest, EveryMethodOfAServerThatDoesNotServeIsUnavailableWithARetryDelay) {
   RunningService running;
   for (const auto& [state, reason] : {std::pair{Admission::State::kLoading, "SERVER_LOADING"},
@@ -172,49 +160,6 @@ TEST(ServiceEndTest, ModelFailureIsInternalWithDetailsOnlyInTheLog) {
   const metrics::CallRecord record = running.calls().WaitFor(1);
   EXPECT_THAT(record.cause, HasSubstr("at::addmm in /usr/secret/generator.cc"));
   EXPECT_THAT(refusal.message, HasSubstr(record.request_id));
-}
-
-// Whether a call's window was in line before its deadline of so many seconds passed, which then
-// ended the call.
-bool ExpiresInLine(int seconds) {
-  PuppetService service;
-  TimedContext context;
-  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(seconds));
-  const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
-  v1::SynthesizeResponse header;
-  if (!reader->Read(&header)) return false;
-  EXPECT_LT(service.puppet.Oldest().deadline, common::TimePoint::max());
-  const Reply reply = ReadAll(*reader);
-  EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
-  // The client's reset may overtake the deadline on a busy machine.
-  EXPECT_THAT(service.running.calls().WaitFor(1).status.code(),
-              AnyOf(StatusCode::kDeadlineExceeded, StatusCode::kCancelled));
-  EXPECT_FALSE(service.puppet.RunNext()) << "its window was evaluated";
-  return true;
-}
-
-TEST(ServiceEndTest, AnExpiredCallNeverStarts) {
-  // As long as a busy machine needs for it to come into line.
-  int seconds = 1;
-  while (!ExpiresInLine(seconds)) seconds *= 2;
-}
-
-TEST(ServiceEndTest, ACallCancelledMidwayStopsThere) {
-  PuppetService service;
-  TimedContext context;
-  const auto reader = service.running.stub().Synthesize(&context, SampleRequest(900));
-  service.puppet.RunNext();
-  v1::SynthesizeResponse message;
-  while (reader->Read(&message) && !message.has_chunk()) {
-  }
-  service.puppet.WaitForJobs(1);
-  context.TryCancel();
-  EXPECT_EQ(ReadAll(*reader).status.error_code(), grpc::StatusCode::CANCELLED);
-  const metrics::CallRecord record = service.running.calls().WaitFor(1);
-  EXPECT_EQ(record.status.code(), StatusCode::kCancelled);
-  EXPECT_EQ(record.windows, 1);
-  EXPECT_FALSE(service.puppet.RunNext()) << "its second window was evaluated";
-  EXPECT_EQ(service.puppet.queued_windows(), 0u);
 }
 
 TEST(ServiceEndTest, AWindowDroppedByTheSchedulerEndsTheCall) {
