@@ -31,8 +31,6 @@ struct Sequence {
   std::vector<std::string> subjects;  // people in it, if the data set states them
   // "index": the data set's index; "guess": a guess by its own word; "motion": the motion rule.
   std::string leader_source;
-  // Whether the motion rule selects the same leader; absent for a class without effectors.
-  std::optional<bool> rule_agrees;
   motion::ClipPair pair;        // world metres, y up, joints in the skeleton's order
   motion::Levelling levelling;  // from the world as captured to that of `pair`
   // Horizontal direction from leader to follower, if the capture's setup defines it: in SBU and
@@ -103,9 +101,6 @@ std::vector<int> AllSequences(const Dataset& dataset);
 // Leave one subject out: test on every sequence with the subject in either role, train on the rest.
 // Errors: NOT_FOUND if the data set does not have the subject.
 absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string& subject);
-
-// Cross-validation: tests on part `part` of `parts` of every class. Requires part < parts.
-Split LeavePartOut(const Dataset& dataset, int part, int parts);
 
 // Splits each class into halves for training and testing. Only `seed` determines the choice. If the
 // number is odd, the training half is larger. Both are sorted. A subject may be in both.

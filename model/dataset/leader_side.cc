@@ -1,6 +1,7 @@
 #include "model/dataset/leader_side.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/ascii.h"
@@ -8,17 +9,15 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/status_macros.h"
 #include "model/base/text.h"
 
 namespace duet::dataset {
 namespace {
 
+// The places of the columns; -1: none.
 struct Columns {
-  int path = -1;
-  int leader_side = -1;
-  int subjects = -1;
-  int source = -1;
-  int group = -1;
+  int path = -1, leader_side = -1, subjects = -1, source = -1, group = -1;
   size_t count = 0;
 };
 
@@ -31,12 +30,15 @@ absl::StatusOr<Columns> ParseHeader(absl::string_view line) {
   Columns columns;
   const std::vector<absl::string_view> names = absl::StrSplit(line, '\t');
   columns.count = names.size();
+  const std::pair<absl::string_view, int*> known[] = {{"path", &columns.path},
+                                                      {"leader_side", &columns.leader_side},
+                                                      {"subjects", &columns.subjects},
+                                                      {"leader_source", &columns.source},
+                                                      {"group", &columns.group}};
   for (size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == "path") columns.path = static_cast<int>(i);
-    if (names[i] == "leader_side") columns.leader_side = static_cast<int>(i);
-    if (names[i] == "subjects") columns.subjects = static_cast<int>(i);
-    if (names[i] == "leader_source") columns.source = static_cast<int>(i);
-    if (names[i] == "group") columns.group = static_cast<int>(i);
+    for (const auto& [name, column] : known) {
+      if (names[i] == name) *column = static_cast<int>(i);
+    }
   }
   if (columns.path < 0 || columns.leader_side < 0) {
     return Wrong(1, "a header of tab-separated names with path and leader_side", "others");
@@ -74,9 +76,7 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     ++line;
     row = absl::StripSuffix(row, "\r");
     if (line == 1) {
-      absl::StatusOr<Columns> header = ParseHeader(row);
-      if (!header.ok()) return header.status();
-      columns = *header;
+      DUET_TRY(columns, ParseHeader(row));
       continue;
     }
     if (row.empty()) continue;
@@ -86,18 +86,14 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     }
     IndexEntry entry;
     entry.line = line;
-    absl::StatusOr<LeaderSide> side =
-        ParseSide(line, cells[static_cast<size_t>(columns.leader_side)]);
-    if (!side.ok()) return side.status();
-    entry.leader_side = *side;
-    if (columns.subjects >= 0) {
-      entry.subjects = ParseSubjects(cells[static_cast<size_t>(columns.subjects)]);
-    }
-    if (columns.source >= 0) {
-      entry.guessed = absl::StartsWith(cells[static_cast<size_t>(columns.source)], "guess");
-    }
-    if (columns.group >= 0) entry.group = std::string(cells[static_cast<size_t>(columns.group)]);
-    const std::string path(cells[static_cast<size_t>(columns.path)]);
+    const auto cell = [&](int column) {
+      return column < 0 ? absl::string_view() : cells[static_cast<size_t>(column)];
+    };
+    DUET_TRY(entry.leader_side, ParseSide(line, cell(columns.leader_side)));
+    entry.subjects = ParseSubjects(cell(columns.subjects));
+    entry.guessed = absl::StartsWith(cell(columns.source), "guess");
+    entry.group = std::string(cell(columns.group));
+    const std::string path(cell(columns.path));
     if (!entries.emplace(path, std::move(entry)).second) {
       return Wrong(line, "each path once", absl::StrCat(base::Quoted(path), " again"));
     }

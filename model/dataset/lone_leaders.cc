@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
+#include "model/base/status_macros.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/resample.h"
 
@@ -34,20 +35,18 @@ absl::StatusOr<std::vector<fs::path>> MotionFilesBelow(const fs::path& folder) {
 absl::StatusOr<std::vector<LoneLeader>> ReadLoneLeaders(const fs::path& folder,
                                                         const motion::Skeleton& skeleton,
                                                         double frame_rate_hz) {
-  const absl::StatusOr<std::vector<fs::path>> files = MotionFilesBelow(folder);
-  if (!files.ok()) return files.status();
+  DUET_TRY(const std::vector<fs::path> files, MotionFilesBelow(folder));
   formats::ReadOptions options;
   options.skeleton = skeleton;
   std::vector<LoneLeader> leaders;
-  for (const fs::path& file : *files) {
-    const absl::StatusOr<motion::Clip> clip = formats::ReadLeader(file, options);
-    if (!clip.ok()) return clip.status();
-    if (clip->frame_count() < 2) {
+  for (const fs::path& file : files) {
+    DUET_TRY(const motion::Clip clip, formats::ReadLeader(file, options));
+    if (clip.frame_count() < 2) {
       return absl::InvalidArgumentError(
-          absl::StrCat(file.string(), ": frames: expected at least 2, got ", clip->frame_count()));
+          absl::StrCat(file.string(), ": frames: expected at least 2, got ", clip.frame_count()));
     }
     leaders.push_back({file.lexically_relative(folder).generic_string(),
-                       motion::Resample(clip->poses, clip->frame_rate_hz, frame_rate_hz)});
+                       motion::Resample(clip.poses, clip.frame_rate_hz, frame_rate_hz)});
   }
   if (!leaders.empty()) return leaders;
   return absl::NotFoundError(

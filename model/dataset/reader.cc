@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
+#include "model/base/status_macros.h"
 #include "model/base/text.h"
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
@@ -55,6 +56,11 @@ bool Exists(const fs::path& path) {
   return fs::exists(path, error);
 }
 
+// An error in a file of the folder, which the message names.
+absl::Status Below(const fs::path& folder, const absl::Status& status) {
+  return absl::InvalidArgumentError(absl::StrCat((folder / "").string(), status.message()));
+}
+
 int FindFolder(const DatasetLayout& layout, const std::string& folder) {
   for (size_t i = 0; i < layout.classes.size(); ++i) {
     if (layout.classes[i].folder == folder) return static_cast<int>(i);
@@ -65,14 +71,12 @@ int FindFolder(const DatasetLayout& layout, const std::string& folder) {
 // <set>/<class>/<sequence>/skeleton_pos.txt. Ignores other classes (approaching, departing).
 absl::Status FindSbuSet(const fs::path& folder, const DatasetLayout& layout, const std::string& set,
                         std::vector<FoundFile>* found) {
-  absl::StatusOr<std::vector<std::string>> classes = ListFolder(folder / set);
-  if (!classes.ok()) return classes.status();
-  for (const std::string& one : *classes) {
+  DUET_TRY(const std::vector<std::string> classes, ListFolder(folder / set));
+  for (const std::string& one : classes) {
     const int interaction_class = FindFolder(layout, one);
     if (interaction_class < 0) continue;
-    absl::StatusOr<std::vector<std::string>> sequences = ListFolder(folder / set / one);
-    if (!sequences.ok()) return sequences.status();
-    for (const std::string& sequence : *sequences) {
+    DUET_TRY(const std::vector<std::string> sequences, ListFolder(folder / set / one));
+    for (const std::string& sequence : sequences) {
       if (!IsFolder(folder / set / one / sequence)) continue;
       found->push_back({absl::StrCat(set, "/", one, "/", sequence, "/skeleton_pos.txt"),
                         set,
@@ -90,8 +94,7 @@ absl::StatusOr<std::vector<FoundFile>> FindSbuFiles(const fs::path& folder,
   std::vector<FoundFile> found;
   for (const std::string& name : names) {
     if (!IsSbuSet(name) || !IsFolder(folder / name)) continue;
-    absl::Status status = FindSbuSet(folder, layout, name, &found);
-    if (!status.ok()) return status;
+    DUET_RETURN_IF_ERROR(FindSbuSet(folder, layout, name, &found));
   }
   return found;
 }
@@ -103,9 +106,8 @@ absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
   for (size_t i = 0; i < layout.classes.size(); ++i) {
     const std::string& one = layout.classes[i].folder;
     if (!IsFolder(folder / one)) continue;
-    absl::StatusOr<std::vector<std::string>> names = ListFolder(folder / one);
-    if (!names.ok()) return names.status();
-    for (const std::string& name : *names) {
+    DUET_TRY(const std::vector<std::string> names, ListFolder(folder / one));
+    for (const std::string& name : names) {
       if (fs::path(name).extension() != ".txt") continue;
       found.push_back({absl::StrCat(one, "/", name), "", static_cast<int>(i), {}, {}});
     }
@@ -116,17 +118,13 @@ absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
 // The files that labels.tsv names, with their time lines.
 absl::StatusOr<std::vector<FoundFile>> FindLabelledFiles(const fs::path& folder,
                                                          const DatasetLayout& layout) {
-  const absl::StatusOr<std::string> text =
-      base::ReadFile(folder / kTimeLines, kMaxIndexBytes, "classes on a time line");
-  if (!text.ok()) return text.status();
+  DUET_TRY(const std::string text,
+           base::ReadFile(folder / kTimeLines, kMaxIndexBytes, "classes on a time line"));
   std::vector<std::string> classes;
   for (const ClassLayout& one : layout.classes) classes.push_back(one.name);
   absl::StatusOr<std::map<std::string, std::vector<LabelSpan>>> time_lines =
-      ParseTimeLines(*text, classes, layout.frame_rate_hz);
-  if (!time_lines.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat((folder / "").string(), time_lines.status().message()));
-  }
+      ParseTimeLines(text, classes, layout.frame_rate_hz);
+  if (!time_lines.ok()) return Below(folder, time_lines.status());
   std::vector<FoundFile> found;
   for (auto& [path, labels] : *time_lines) {
     found.push_back({path, "", LongestClass(labels), {}, std::move(labels)});
@@ -136,14 +134,10 @@ absl::StatusOr<std::vector<FoundFile>> FindLabelledFiles(const fs::path& folder,
 
 absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& folder) {
   if (!Exists(folder / "index.tsv")) return std::map<std::string, IndexEntry>{};
-  absl::StatusOr<std::string> text =
-      base::ReadFile(folder / "index.tsv", kMaxIndexBytes, "an index of sequences");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<std::map<std::string, IndexEntry>> index = ParseIndex(*text);
-  if (!index.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat((folder / "").string(), index.status().message()));
-  }
+  DUET_TRY(const std::string text,
+           base::ReadFile(folder / "index.tsv", kMaxIndexBytes, "an index of sequences"));
+  absl::StatusOr<std::map<std::string, IndexEntry>> index = ParseIndex(text);
+  if (!index.ok()) return Below(folder, index.status());
   // With a misspelt path, the motion rule would silently choose the leader of that file.
   for (const auto& [path, entry] : *index) {
     if (Exists(folder / path)) continue;
@@ -165,19 +159,6 @@ absl::StatusOr<formats::flat::SbuRecording> ReadPeople(const std::string& path,
     return base::ErrorAt(path, 1, "frames: expected at least 2, got 1");
   }
   return people;
-}
-
-// The leader by the motion rule. Fails if the class has no effectors.
-LeaderSide LeaderByRule(const formats::flat::SbuRecording& people, const ClassLayout& interaction,
-                        int root) {
-  if (interaction.effectors.empty()) return LeaderSide::kUnknown;
-  return LeaderByMotion(people.left, people.right, root, interaction.effectors);
-}
-
-absl::Status NobodyLeads(const std::string& path, const ClassLayout& interaction) {
-  return absl::InvalidArgumentError(absl::StrCat(
-      path, ": leader_side: expected left or right in index.tsv, or effectors for class ",
-      interaction.name, " in dataset.json, got neither"));
 }
 
 // The end of the axis at which the follower stands, inferred from the pair: the order in the files
@@ -208,25 +189,29 @@ absl::Status CheckTimeLine(const std::string& path, const DatasetLayout& layout,
 absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayout& layout,
                                       const IndexEntry& entry, const FoundFile& file) {
   const std::string path = (folder / file.id).string();
-  absl::StatusOr<formats::flat::SbuRecording> people = ReadPeople(path, layout);
-  if (!people.ok()) return people.status();
+  DUET_TRY(formats::flat::SbuRecording people, ReadPeople(path, layout));
   Sequence sequence;
   sequence.id = file.id;
   sequence.set = file.set;
   sequence.interaction_class = file.interaction_class;
   sequence.subjects = entry.subjects.empty() ? file.subjects : entry.subjects;
-  const ClassLayout& interaction = layout.classes[static_cast<size_t>(file.interaction_class)];
-  const LeaderSide ruled = LeaderByRule(*people, interaction, layout.skeleton.root);
-  const bool indexed = entry.leader_side != LeaderSide::kUnknown;
-  const LeaderSide side = indexed ? entry.leader_side : ruled;
-  if (side == LeaderSide::kUnknown) return NobodyLeads(path, interaction);
-  sequence.leader_source = indexed ? (entry.guessed ? "guess" : "index") : "motion";
-  if (ruled != LeaderSide::kUnknown) sequence.rule_agrees = ruled == side;
-  if (side == LeaderSide::kRight) std::swap(people->left, people->right);
-  sequence.pair = {std::move(people->left), std::move(people->right)};
+  sequence.leader_source = entry.guessed ? "guess" : "index";
+  LeaderSide side = entry.leader_side;
+  if (side == LeaderSide::kUnknown) {
+    const ClassLayout& one = layout.classes[static_cast<size_t>(file.interaction_class)];
+    if (one.effectors.empty()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          path, ": leader_side: expected left or right in index.tsv, or effectors for class ",
+          one.name, " in dataset.json, got neither"));
+    }
+    sequence.leader_source = "motion";
+    side = LeaderByMotion(people.left, people.right, layout.skeleton.root, one.effectors);
+  }
+  if (side == LeaderSide::kRight) std::swap(people.left, people.right);
+  sequence.pair = {std::move(people.left), std::move(people.right)};
   sequence.partner_direction = PartnerDirection(layout, sequence.pair);
   sequence.labels = file.labels;
-  if (absl::Status status = CheckTimeLine(path, layout, sequence); !status.ok()) return status;
+  DUET_RETURN_IF_ERROR(CheckTimeLine(path, layout, sequence));
   return sequence;
 }
 
@@ -239,8 +224,7 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
   }
   std::sort(files.begin(), files.end(),
             [](const FoundFile& a, const FoundFile& b) { return a.id < b.id; });
-  absl::StatusOr<std::map<std::string, IndexEntry>> index = ReadIndex(folder);
-  if (!index.ok()) return index.status();
+  DUET_TRY(auto index, ReadIndex(folder));
   Dataset dataset;
   dataset.name = layout.name;
   dataset.skeleton = layout.skeleton;
@@ -254,50 +238,38 @@ absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& l
     dataset.touches.push_back(one.touches);
   }
   for (const FoundFile& file : files) {
-    const auto entry = index->find(file.id);
-    absl::StatusOr<Sequence> sequence =
-        ReadSequence(folder, layout, entry == index->end() ? IndexEntry{} : entry->second, file);
-    if (!sequence.ok()) return sequence.status();
-    dataset.sequences.push_back(*std::move(sequence));
+    DUET_TRY(dataset.sequences.emplace_back(), ReadSequence(folder, layout, index[file.id], file));
   }
   if (layout.level) LevelSets(&dataset);
   return dataset;
 }
 
 absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder, const std::string& text) {
-  absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(text);
-  if (!layout.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat((folder / "").string(), layout.status().message()));
-  }
-  absl::StatusOr<std::vector<FoundFile>> files = Exists(folder / kTimeLines)
-                                                     ? FindLabelledFiles(folder, *layout)
-                                                     : FindClassFiles(folder, *layout);
-  if (!files.ok()) return files.status();
-  return ReadFiles(folder, *layout, *std::move(files));
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(text);
+  if (!layout.ok()) return Below(folder, layout.status());
+  DUET_TRY(std::vector<FoundFile> files, Exists(folder / kTimeLines)
+                                             ? FindLabelledFiles(folder, *layout)
+                                             : FindClassFiles(folder, *layout));
+  return ReadFiles(folder, *layout, std::move(files));
 }
 
 }  // namespace
 
 absl::StatusOr<Dataset> ReadDataset(const fs::path& folder) {
-  absl::StatusOr<std::vector<std::string>> names = ListFolder(folder);
-  if (!names.ok()) return names.status();
-  if (std::count(names->begin(), names->end(), "dataset.json") > 0) {
-    const absl::StatusOr<std::string> text =
-        base::ReadFile(folder / "dataset.json", kMaxLayoutBytes, "a data set's layout");
-    if (!text.ok()) return text.status();
-    if (!DescribesBatch(*text)) return ReadOwnData(folder, *text);
+  DUET_TRY(const std::vector<std::string> names, ListFolder(folder));
+  if (std::count(names.begin(), names.end(), "dataset.json") > 0) {
+    DUET_TRY(const std::string text,
+             base::ReadFile(folder / "dataset.json", kMaxLayoutBytes, "a data set's layout"));
+    if (!DescribesBatch(text)) return ReadOwnData(folder, text);
   }
-  if (std::any_of(names->begin(), names->end(), IsSbuSet)) {
+  if (std::any_of(names.begin(), names.end(), IsSbuSet)) {
     const DatasetLayout layout = SbuLayout();
-    absl::StatusOr<std::vector<FoundFile>> files = FindSbuFiles(folder, layout, *names);
-    if (!files.ok()) return files.status();
-    return ReadFiles(folder, layout, *std::move(files));
+    DUET_TRY(std::vector<FoundFile> files, FindSbuFiles(folder, layout, names));
+    return ReadFiles(folder, layout, std::move(files));
   }
   const DatasetLayout layout = K3hiLayout();
-  absl::StatusOr<std::vector<FoundFile>> files = FindClassFiles(folder, layout);
-  if (!files.ok()) return files.status();
-  if (!files->empty()) return ReadFiles(folder, layout, *std::move(files));
+  DUET_TRY(std::vector<FoundFile> files, FindClassFiles(folder, layout));
+  if (!files.empty()) return ReadFiles(folder, layout, std::move(files));
   return absl::NotFoundError(absl::StrCat(
       folder.string(), ": expected sXXsYY/<class>/<sequence>/skeleton_pos.txt (SBU), ",
       "<class>/<sequence>.txt (K3HI) or a dataset.json, got none; see docs/datasets.md"));

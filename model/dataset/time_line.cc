@@ -9,7 +9,9 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/status_macros.h"
 #include "model/base/text.h"
+#include "model/motion/resample.h"
 
 namespace duet::dataset {
 namespace {
@@ -42,13 +44,10 @@ absl::StatusOr<int> ParseFrame(int line, const char* column, absl::string_view t
 
 absl::StatusOr<LabelSpan> ParseSpan(int line, const std::vector<absl::string_view>& cells,
                                     const std::vector<std::string>& classes, double frame_rate_hz) {
-  const absl::StatusOr<int> interaction_class = ParseClass(line, cells[1], classes);
-  if (!interaction_class.ok()) return interaction_class.status();
-  const absl::StatusOr<int> begin = ParseFrame(line, "from_seconds", cells[2], frame_rate_hz);
-  if (!begin.ok()) return begin.status();
-  const absl::StatusOr<int> end = ParseFrame(line, "to_seconds", cells[3], frame_rate_hz);
-  if (!end.ok()) return end.status();
-  if (*end > *begin) return LabelSpan{*interaction_class, *begin, *end};
+  DUET_TRY(const int interaction_class, ParseClass(line, cells[1], classes));
+  DUET_TRY(const int begin, ParseFrame(line, "from_seconds", cells[2], frame_rate_hz));
+  DUET_TRY(const int end, ParseFrame(line, "to_seconds", cells[3], frame_rate_hz));
+  if (end > begin) return LabelSpan{interaction_class, begin, end};
   return Wrong(line, absl::StrCat("to_seconds: expected at least one frame after from_seconds ",
                                   cells[2], ", got ", cells[3]));
 }
@@ -58,11 +57,7 @@ Sequence Window(const Sequence& sequence, int begin, int frames) {
   Sequence window = sequence;
   window.id = absl::StrCat(sequence.id, "#", begin);
   for (motion::Clip* clip : {&window.pair.leader, &window.pair.follower}) {
-    const motion::Poses whole = clip->poses;
-    clip->poses.Resize(frames);
-    for (int t = 0; t < frames; ++t) {
-      std::copy(whole[begin + t].begin(), whole[begin + t].end(), clip->poses[t].begin());
-    }
+    clip->poses = motion::Part(clip->poses, begin, frames);
   }
   window.labels.clear();
   for (const LabelSpan& span : sequence.labels) {
@@ -92,9 +87,8 @@ absl::StatusOr<std::map<std::string, std::vector<LabelSpan>>> ParseTimeLines(
     if (cells.size() != kColumns) {
       return Wrong(line, absl::StrCat("expected ", kColumns, " columns, got ", cells.size()));
     }
-    const absl::StatusOr<LabelSpan> span = ParseSpan(line, cells, classes, frame_rate_hz);
-    if (!span.ok()) return span.status();
-    time_lines[std::string(cells[0])].push_back(*span);
+    DUET_TRY(const LabelSpan span, ParseSpan(line, cells, classes, frame_rate_hz));
+    time_lines[std::string(cells[0])].push_back(span);
   }
   for (auto& [path, spans] : time_lines) {
     std::stable_sort(spans.begin(), spans.end(),

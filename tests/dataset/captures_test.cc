@@ -60,22 +60,6 @@ TEST(CapturesTest, PeopleStandUprightOnceLevelled) {
   }
 }
 
-TEST(CapturesTest, TheMotionRuleAgreesWithTheIndexOnSbu) {
-  const auto folder = test::FindData("sbu");
-  if (!folder) GTEST_SKIP() << test::kNoData;
-  const absl::StatusOr<Dataset> dataset = ReadDataset(*folder);
-  ASSERT_TRUE(dataset.ok()) << dataset.status();
-  int agreed = 0, asked = 0;
-  for (const Sequence& one : dataset->sequences) {
-    if (dataset->symmetric[static_cast<size_t>(one.interaction_class)]) continue;
-    ++asked;
-    ASSERT_TRUE(one.rule_agrees.has_value()) << one.id;
-    if (*one.rule_agrees) ++agreed;
-  }
-  EXPECT_EQ(asked, 94);
-  EXPECT_GE(agreed, 80);
-}
-
 TEST(CapturesTest, K3hiIsWhole) {
   const auto folder = test::FindData("k3hi");
   if (!folder) GTEST_SKIP() << test::kNoData;

@@ -68,19 +68,6 @@ TEST(SplitInHalvesTest, HalvesEachClass) {
   EXPECT_EQ(together, All(dataset));
 }
 
-TEST(LeavePartOutTest, EverySequenceIsTestedOnceAndEveryClassInEachPart) {
-  const Dataset dataset = MadeUp({5, 3});
-  std::vector<int> tested;
-  for (int part = 0; part < 3; ++part) {
-    const Split split = LeavePartOut(dataset, part, 3);
-    EXPECT_EQ(split.train.size() + split.test.size(), 8u);
-    EXPECT_EQ(CountByClass(dataset, split.test).size(), 2u) << part;
-    tested.insert(tested.end(), split.test.begin(), split.test.end());
-  }
-  std::sort(tested.begin(), tested.end());
-  EXPECT_EQ(tested, AllSequences(dataset));
-}
-
 TEST(TakeValidationTest, TakesTheFractionOfEachClass) {
   const Dataset dataset = MadeUp({20, 10, 3, 1});
   std::vector<int> train = All(dataset);
