@@ -1,6 +1,5 @@
 #include "model/checkpoint/architecture.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -11,7 +10,6 @@
 #include "model/checkpoint/architecture_json.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/checkpoint/manifest.h"
-#include "model/checkpoint/names.h"
 
 namespace duet::checkpoint {
 namespace {
@@ -223,8 +221,6 @@ std::vector<TensorSpec> Tensors(const Manifest& manifest, const FlowArchitecture
 
 namespace {
 
-using Reader = Architecture (*)(base::ObjectReader*);
-
 template <typename T>
 Architecture ReadAs(base::ObjectReader* reader) {
   T architecture;
@@ -232,28 +228,19 @@ Architecture ReadAs(base::ObjectReader* reader) {
   return architecture;
 }
 
-// One row for each alternative of the variant, by kind.
-template <typename... T>
-constexpr std::array<Named<Reader>, sizeof...(T)> Rows(const std::variant<T...>* /*type*/) {
-  return {Named<Reader>{T::kKind, &ReadAs<T>}...};
-}
-
-constexpr auto kReaders = Rows(static_cast<const Architecture*>(nullptr));
-
 }  // namespace
 
 Architecture ReadArchitecture(bool has_kind, base::ObjectReader* reader) {
+  constexpr Named<Architecture (*)(base::ObjectReader*)> kReaders[] = {
+      {PaperArchitecture::kKind, &ReadAs<PaperArchitecture>},
+      {FlowArchitecture::kKind, &ReadAs<FlowArchitecture>}};
   if (!has_kind) return ReadAs<PaperArchitecture>(reader);
-  const Reader read = ReadNamed(reader, kArchitectureKind, kReaders);
+  const auto read = ReadNamed(reader, kArchitectureKind, kReaders);
   return reader->ok() ? read(reader) : Architecture();
 }
 
 nlohmann::ordered_json ToJson(const Architecture& architecture) {
   return std::visit([](const auto& one) { return ToJson(one); }, architecture);
-}
-
-std::string_view Summary(const Architecture& architecture) {
-  return std::visit([](const auto& one) { return one.kSummary; }, architecture);
 }
 
 void SetArchitecture(const Architecture& architecture, Manifest* manifest) {

@@ -27,7 +27,6 @@ enum class GeneratorVariant {
 // whole body. Every size comes from a manifest or a training configuration; none has a default.
 struct PaperArchitecture {
   static constexpr std::string_view kKind = "paper";
-  static constexpr std::string_view kSummary = "one answer for each request (the paper's)";
   static constexpr bool kSamples = false;
   bool AcceptsFollowerStart() const { return follower_start; }
   static bool LabelsGuide() { return false; }
@@ -73,13 +72,10 @@ struct SliceShape {
 };
 std::vector<SliceShape> SliceShapes(const Manifest& manifest);
 
-struct Manifest;
-
 // The sampling generator: a transformer over the whole window, trained by conditional flow
 // matching. Every value comes from a manifest or a training configuration; none has a default.
 struct FlowArchitecture {
   static constexpr std::string_view kKind = "flow";
-  static constexpr std::string_view kSummary = "sampling (flow matching): answers depend on a seed";
   static constexpr bool kSamples = true;
   static bool AcceptsFollowerStart() { return true; }
   bool LabelsGuide() const { return !frame_labels; }
@@ -149,7 +145,6 @@ std::vector<TensorSpec> Tensors(const Manifest& manifest, const FlowArchitecture
 
 // Every architecture of a generator: its sizes, and what its files contain. An alternative T has
 //   T::kKind       its name in "generator.kind" of manifests and training configurations
-//   T::kSummary    one line for model cards
 //   T::kSamples    whether answers depend on a seed
 //   AcceptsFollowerStart()
 //   LabelsGuide()           // ModelDescription::labels_guide
@@ -158,9 +153,6 @@ std::vector<TensorSpec> Tensors(const Manifest& manifest, const FlowArchitecture
 // All that dispatches on the variant in this layer is architecture.cc. The layers above register
 // each alternative in one place each; docs/guides/add_a_model_architecture.md lists them.
 using Architecture = std::variant<PaperArchitecture, FlowArchitecture>;
-
-// One line for model cards.
-std::string_view Summary(const Architecture& architecture);
 
 // Sets the architecture, and in manifest->model what follows from it: `samples` and
 // `accepts_follower_start`.

@@ -13,6 +13,7 @@
 #include "absl/time/time.h"
 #include "model/base/file_io.h"
 #include "model/base/sha256.h"
+#include "model/base/status_macros.h"
 #include "model/base/text.h"
 #include "model/checkpoint/architecture.h"
 
@@ -89,37 +90,30 @@ std::vector<Tensor> TakeCritic(std::vector<Tensor>* tensors) {
 
 absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
                                            std::string_view weights) {
-  absl::StatusOr<Manifest> manifest = ParseManifest(manifest_json);
-  if (!manifest.ok()) return manifest.status();
-  if (absl::Status status = CheckFile(manifest->weights, weights); !status.ok()) return status;
-  absl::StatusOr<std::vector<Tensor>> tensors = ParseSafetensors(weights);
-  if (!tensors.ok()) return tensors.status();
-  absl::StatusOr<std::vector<Tensor>> critic = TakeCritic(&*tensors);
-  if (!critic->empty()) critic = Arrange(*std::move(critic), CriticTensors(manifest->model));
-  if (!critic.ok()) return critic.status();
-  tensors = Arrange(*std::move(tensors), ExpectedTensors(*manifest));
-  if (!tensors.ok()) return tensors.status();
-  return Checkpoint{*std::move(manifest), *std::move(tensors), *std::move(critic)};
+  DUET_TRY(Manifest manifest, ParseManifest(manifest_json));
+  DUET_RETURN_IF_ERROR(CheckFile(manifest.weights, weights));
+  DUET_TRY(std::vector<Tensor> tensors, ParseSafetensors(weights));
+  std::vector<Tensor> critic = TakeCritic(&tensors);
+  if (!critic.empty()) {
+    DUET_TRY(critic, Arrange(std::move(critic), CriticTensors(manifest.model)));
+  }
+  DUET_TRY(tensors, Arrange(std::move(tensors), ExpectedTensors(manifest)));
+  return Checkpoint{std::move(manifest), std::move(tensors), std::move(critic)};
 }
 
 absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
-  const absl::StatusOr<base::Folder> files = base::Folder::Open(folder);
-  if (!files.ok()) return files.status();
-  const absl::StatusOr<std::string> text = files->Read(kManifestFile, kMaxManifestBytes);
-  if (!text.ok()) return text.status();
-  const absl::StatusOr<Manifest> manifest = ParseManifest(*text);
-  if (!manifest.ok()) return manifest.status();
+  DUET_TRY(const base::Folder files, base::Folder::Open(folder));
+  DUET_TRY(const std::string text, files.Read(kManifestFile, kMaxManifestBytes));
+  DUET_TRY(const Manifest manifest, ParseManifest(text));
   // A larger file is rejected before it is read.
-  const absl::StatusOr<std::string> weights =
-      files->Read(manifest->weights.file, static_cast<std::size_t>(manifest->weights.bytes));
-  if (!weights.ok()) return weights.status();
-  return ParseCheckpoint(*text, *weights);
+  DUET_TRY(const std::string weights,
+           files.Read(manifest.weights.file, static_cast<std::size_t>(manifest.weights.bytes)));
+  return ParseCheckpoint(text, weights);
 }
 
 absl::Status CheckManifest(Manifest manifest) {
-  absl::Status valid = Validate(manifest.model.skeleton);
-  if (valid.ok()) valid = Validate(manifest.parts, manifest.model.skeleton);
-  if (!valid.ok()) return valid;
+  DUET_RETURN_IF_ERROR(Validate(manifest.model.skeleton));
+  DUET_RETURN_IF_ERROR(Validate(manifest.parts, manifest.model.skeleton));
   manifest.weights.bytes = 1;
   manifest.weights.sha256 = base::Sha256Hex("");
   manifest.created = FormatNow();
@@ -127,22 +121,18 @@ absl::Status CheckManifest(Manifest manifest) {
 }
 
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint) {
-  const motion::Skeleton& skeleton = checkpoint.manifest.model.skeleton;
-  absl::Status valid = Validate(skeleton);
-  if (valid.ok()) valid = Validate(checkpoint.manifest.parts, skeleton);
-  if (!valid.ok()) return valid;
+  Manifest& manifest = checkpoint.manifest;
+  DUET_RETURN_IF_ERROR(Validate(manifest.model.skeleton));
+  DUET_RETURN_IF_ERROR(Validate(manifest.parts, manifest.model.skeleton));
   std::vector<Tensor> tensors = std::move(checkpoint.tensors);
   std::move(checkpoint.critic.begin(), checkpoint.critic.end(), std::back_inserter(tensors));
   const std::string weights = SerializeSafetensors(tensors, {{"format", "pt"}});
-  Manifest& manifest = checkpoint.manifest;
   manifest.weights.bytes = weights.size();
   manifest.weights.sha256 = base::Sha256Hex(weights);
-  if (manifest.created.empty()) {
-    manifest.created = FormatNow();
-  }
+  if (manifest.created.empty()) manifest.created = FormatNow();
   const std::string text = SerializeManifest(manifest);
   // Content that cannot be read back must not be written.
-  if (absl::Status status = ParseCheckpoint(text, weights).status(); !status.ok()) return status;
+  DUET_RETURN_IF_ERROR(ParseCheckpoint(text, weights).status());
   return base::WriteFolder(folder, {{manifest.weights.file, weights}, {kManifestFile, text}});
 }
 

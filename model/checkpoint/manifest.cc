@@ -12,7 +12,6 @@
 #include "model/base/strict_json.h"
 #include "model/checkpoint/architecture_json.h"
 #include "model/checkpoint/leader_json.h"
-#include "model/checkpoint/names.h"
 #include "model/engine/windows.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/skeleton_json.h"

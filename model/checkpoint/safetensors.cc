@@ -17,6 +17,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/status_macros.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 
@@ -99,8 +100,7 @@ absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
   }
   entry.shape = ReadInts(&reader, "shape", kMaxRank, 1);
   const std::vector<int64_t> offsets = ReadInts(&reader, "data_offsets", 2, 0);
-  if (absl::Status status = reader.Finish(); !status.ok()) return status;
-
+  DUET_RETURN_IF_ERROR(reader.Finish());
   if (offsets.size() != 2 || offsets[0] > offsets[1]) {
     reader.Fail("data_offsets", "expected a begin and an end that is not before it");
     return reader.Finish();
@@ -134,12 +134,10 @@ absl::StatusOr<std::vector<Entry>> ReadHeader(std::string_view header) {
   std::vector<Entry> entries;
   for (const auto& field : root->items()) {
     if (field.key() == kMetadata) {
-      if (absl::Status status = CheckMetadata(field.value()); !status.ok()) return status;
+      DUET_RETURN_IF_ERROR(CheckMetadata(field.value()));
       continue;
     }
-    absl::StatusOr<Entry> entry = ReadEntry(field.key(), field.value());
-    if (!entry.ok()) return entry.status();
-    entries.push_back(*std::move(entry));
+    DUET_TRY(entries.emplace_back(), ReadEntry(field.key(), field.value()));
   }
   return entries;
 }
@@ -185,21 +183,15 @@ absl::StatusOr<Tensor> ReadTensor(Entry entry, std::string_view data) {
 }  // namespace
 
 absl::StatusOr<std::vector<Tensor>> ParseSafetensors(std::string_view bytes) {
-  const absl::StatusOr<std::string_view> header = HeaderOf(bytes);
-  if (!header.ok()) return header.status();
-  const std::string_view data = bytes.substr(kLengthBytes + header->size());
-
-  absl::StatusOr<std::vector<Entry>> entries = ReadHeader(*header);
-  if (!entries.ok()) return entries.status();
-  std::sort(entries->begin(), entries->end(),
+  DUET_TRY(const std::string_view header, HeaderOf(bytes));
+  const std::string_view data = bytes.substr(kLengthBytes + header.size());
+  DUET_TRY(std::vector<Entry> entries, ReadHeader(header));
+  std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.begin < b.begin; });
-  if (absl::Status status = CheckRanges(*entries, data.size()); !status.ok()) return status;
-
+  DUET_RETURN_IF_ERROR(CheckRanges(entries, data.size()));
   std::vector<Tensor> tensors;
-  for (Entry& entry : *entries) {
-    absl::StatusOr<Tensor> tensor = ReadTensor(std::move(entry), data);
-    if (!tensor.ok()) return tensor.status();
-    tensors.push_back(*std::move(tensor));
+  for (Entry& entry : entries) {
+    DUET_TRY(tensors.emplace_back(), ReadTensor(std::move(entry), data));
   }
   return tensors;
 }

@@ -16,7 +16,6 @@
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/checkpoint/architecture_json.h"
-#include "model/checkpoint/names.h"
 #include "model/retargeting/anatomy.h"
 
 namespace duet::training {

@@ -9,7 +9,6 @@
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
 #include "model/engine/windows.h"
-#include "tests/checkpoint/edited_manifest.h"
 #include "tests/support/architectures.h"
 #include "tests/support/matchers.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -20,6 +19,18 @@ namespace {
 using nlohmann::json;
 using test::CompleteManifest;
 using test::TinyManifest;
+
+// Matches INVALID_ARGUMENT with these words.
+auto IsInvalid(const std::string& words) {
+  return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(words));
+}
+
+// Parses the text of a manifest in which the value at a JSON pointer is replaced.
+absl::Status ParseEdited(const Manifest& manifest, const std::string& pointer, const json& value) {
+  json root = json::parse(SerializeManifest(manifest));
+  root[json::json_pointer(pointer)] = value;
+  return ParseManifest(root.dump()).status();
+}
 
 json CompleteJson() { return json::parse(SerializeManifest(CompleteManifest())); }
 
@@ -90,6 +101,17 @@ TEST(Manifest, TermsAndDigestReachTheDescription) {
   const absl::StatusOr<Manifest> silent = ParseManifest(SerializeManifest(CompleteManifest()));
   ASSERT_THAT(silent, IsOk());
   EXPECT_EQ(silent->model.terms, "");
+}
+
+TEST(Manifest, DefaultSeedsAreWholeNumbers) {
+  Manifest manifest = CompleteManifest();
+  EXPECT_THAT(RoundTrip(manifest).model.default_seeds, IsEmpty());
+  manifest.model.default_seeds = {3, 18446744073709551615u};
+  EXPECT_THAT(RoundTrip(manifest).model.default_seeds, ElementsAre(3, 18446744073709551615u));
+  for (const json& seed : {json(-1), json(0.5), json("1")}) {
+    EXPECT_THAT(ParseEdited(CompleteManifest(), "/default_seeds", {7, seed}),
+                IsInvalid("default_seeds[1]: expected a whole number from 0, got"));
+  }
 }
 
 TEST(Manifest, LookaheadLeavesAWindowRoomToAdvance) {
