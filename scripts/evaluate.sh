@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly bin="$1" data="$2" runs="$3" results="$4" report="$5"
 readonly ablations=(without_discriminator without_embedding without_bone with_paper_frame
-  with_continuity with_path_length with_strong_adversary without_fc)
+  with_continuity without_fc)
 readonly methods=class_mean,frozen_first_frame,nearest_neighbour,hmm,kzbh12,hk14,hfkb15
 readonly quality=velocity_error,bone_length_drift,jitter,skating_ratio,foot_slide_cm
 readonly touch=penetration_frequency,penetration_depth_m

@@ -50,7 +50,6 @@ class Error {
         tilt_(random->Normal(options.tilt)),
         bend_(random->Normal(options.bend)),
         turn_(random->Normal(options.turn)),
-        twist_(DrawTwist(options.twist, random)),
         moved_{static_cast<float>(random->Normal(options.root)),
                static_cast<float>(random->Normal(options.height)),
                static_cast<float>(random->Normal(options.root))} {
@@ -61,10 +60,7 @@ class Error {
 
   // `share` 1 applies it in full. Shapes: pose [joints].
   void Apply(double share, absl::Span<Vec3> pose) const {
-    if (skeleton_.hips) {
-      Twist(share, pose);
-      Bend(share, pose);
-    }
+    if (skeleton_.hips) Bend(share, pose);
     Vec3 pivot = pose[static_cast<size_t>(skeleton_.root)];
     for (const Vec3& joint : pose) pivot.y = std::min(pivot.y, joint.y);
     const float part = static_cast<float>(share);
@@ -75,23 +71,6 @@ class Error {
   }
 
  private:
-  // Draws nothing for an error that is disabled, so that runs of version 1.0 can be repeated.
-  static double DrawTwist(double deviation, base::Random* random) {
-    return deviation > 0 ? random->Normal(deviation) : 0;
-  }
-
-  // Turns what is above the hips about the vertical through the root, the joint that joins it to
-  // the hips, so that no limb changes its length.
-  void Twist(double share, absl::Span<Vec3> pose) const {
-    if (twist_ == 0) return;
-    const Vec3 pivot = pose[static_cast<size_t>(skeleton_.root)];
-    for (size_t j = 0; j < pose.size(); ++j) {
-      const int joint = static_cast<int>(j);
-      const bool hip = joint == skeleton_.hips->left || joint == skeleton_.hips->right;
-      if (!hip && !below_hips_[j]) pose[j] = pivot + RotateY(pose[j] - pivot, share * twist_);
-    }
-  }
-
   void Bend(double share, absl::Span<Vec3> pose) const {
     const Vec3 pivot = Lerp(pose[static_cast<size_t>(skeleton_.hips->left)],
                             pose[static_cast<size_t>(skeleton_.hips->right)], 0.5f);
@@ -104,7 +83,7 @@ class Error {
   const motion::Skeleton& skeleton_;
   const std::vector<bool> below_hips_;
   const Vec3 tilt_axis_, bend_axis_;
-  const double tilt_, bend_, turn_, twist_;
+  const double tilt_, bend_, turn_;
   const Vec3 moved_;
   std::vector<Vec3> joints_;
 };

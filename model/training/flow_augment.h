@@ -16,7 +16,7 @@
 
 namespace duet::training {
 
-// Adds an error to the known first frames of a follower: tilts, bends, turns, twists and displaces
+// Adds an error to the known first frames of a follower: tilts, bends, turns and displaces
 // them, like a follower that has continued from its own answers for a while. The target starts with
 // the same error and reaches the captured motion `options.frames` frames after the last known one.
 // Requires a start pose. Shapes: target [frames, joints], as the input's leader. Source: like

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/status_macros.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/training/named_configs.inc"
@@ -26,7 +27,7 @@ absl::StatusOr<TrainingOptions> ParseDerived(const json& value, const Replacemen
     reader.Fail("base", absl::StrCat("expected a named configuration, got ", base::Quoted(name)));
   }
   const json& set = reader.Object("set");
-  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  DUET_RETURN_IF_ERROR(reader.Finish());
   Replacements all;
   for (const auto& [path, setting] : set.items()) all.emplace_back(path, setting.dump());
   all.insert(all.end(), replacements.begin(), replacements.end());
@@ -44,9 +45,8 @@ const NamedConfig* FindConfig(std::string_view name) {
 
 absl::StatusOr<TrainingOptions> ParseConfig(std::string_view text,
                                             const Replacements& replacements) {
-  absl::StatusOr<json> value = base::ParseStrictJson(text, kMaxDepth);
-  if (!value.ok()) return value.status();
-  if (value->is_object() && value->contains("base")) return ParseDerived(*value, replacements);
+  DUET_TRY(const json value, base::ParseStrictJson(text, kMaxDepth));
+  if (value.contains("base")) return ParseDerived(value, replacements);
   return ParseTrainingOptions(text, replacements);
 }
 

@@ -48,14 +48,37 @@ class SettingFields {
   // Whether there is a field of this name. Fields that configurations of earlier versions lack are
   // declared only if there is one.
   bool Has(const std::string& name) const { return reader_ == nullptr || reader_->Has(name); }
-  void Number(const std::string& name, double min, double max, double* value);
+  void Number(const std::string& name, double min, double max, double* value) {
+    if (reader_ != nullptr) {
+      *value = reader_->Number(name, min, max);
+    } else {
+      Describe(name, std::string(absl::StripSuffix(json(*value).dump(), ".0")));
+    }
+  }
   // A probability, or a part of a whole.
   void Share(const std::string& name, double* value) { Number(name, 0, 1, value); }
-  void Int(const std::string& name, int64_t min, int64_t max, int64_t* value);
-  void Bool(const std::string& name, bool* value);
+  void Int(const std::string& name, int64_t min, int64_t max, int64_t* value) {
+    if (reader_ != nullptr) *value = reader_->Int(name, min, max);
+    Describe(name, absl::StrCat(*value));
+  }
+  void Bool(const std::string& name, bool* value) {
+    if (reader_ != nullptr) *value = reader_->Bool(name);
+    Describe(name, *value ? "true" : "false");
+  }
   // One of several words.
-  void Word(const std::string& name, const std::vector<std::string>& choices, std::string* value);
-  void Words(const std::string& name, std::vector<std::string>* values);
+  void Word(const std::string& name, const std::vector<std::string>& choices, std::string* value) {
+    Describe(name, *value);
+    if (reader_ == nullptr) return;
+    *value = reader_->String(name, kMaxWordBytes);
+    if (reader_->ok() && std::find(choices.begin(), choices.end(), *value) == choices.end()) {
+      reader_->Fail(name, absl::StrCat("expected one of ", absl::StrJoin(choices, ", "), ", got ",
+                                       base::Quoted(*value)));
+    }
+  }
+  void Words(const std::string& name, std::vector<std::string>* values) {
+    if (reader_ != nullptr) *values = reader_->Strings(name, kMaxWords);
+    Describe(name, absl::StrJoin(*values, " "));
+  }
 
   // Declares the fields of the object `name` with `declare()`.
   template <typename Declare>
@@ -75,56 +98,14 @@ class SettingFields {
   }
 
  private:
+  void Describe(const std::string& name, const std::string& value) {
+    if (description_ != nullptr) (*description_)[path_ + name] = value;
+  }
+
   base::ObjectReader* reader_ = nullptr;  // of the current section
   Description* description_ = nullptr;
   std::string path_;  // of the current section, with a dot at its end
 };
-
-void SettingFields::Number(const std::string& name, double min, double max, double* value) {
-  if (reader_ != nullptr) {
-    *value = reader_->Number(name, min, max);
-  } else {
-    const std::string text = nlohmann::json(*value).dump();
-    (*description_)[path_ + name] = std::string(absl::StripSuffix(text, ".0"));
-  }
-}
-
-void SettingFields::Int(const std::string& name, int64_t min, int64_t max, int64_t* value) {
-  if (reader_ != nullptr) {
-    *value = reader_->Int(name, min, max);
-  } else {
-    (*description_)[path_ + name] = absl::StrCat(*value);
-  }
-}
-
-void SettingFields::Bool(const std::string& name, bool* value) {
-  if (reader_ != nullptr) {
-    *value = reader_->Bool(name);
-  } else {
-    (*description_)[path_ + name] = *value ? "true" : "false";
-  }
-}
-
-void SettingFields::Word(const std::string& name, const std::vector<std::string>& choices,
-                         std::string* value) {
-  if (reader_ == nullptr) {
-    (*description_)[path_ + name] = *value;
-    return;
-  }
-  *value = reader_->String(name, kMaxWordBytes);
-  if (reader_->ok() && std::find(choices.begin(), choices.end(), *value) == choices.end()) {
-    reader_->Fail(name, absl::StrCat("expected one of ", absl::StrJoin(choices, ", "), ", got ",
-                                     base::Quoted(*value)));
-  }
-}
-
-void SettingFields::Words(const std::string& name, std::vector<std::string>* values) {
-  if (reader_ != nullptr) {
-    *values = reader_->Strings(name, kMaxWords);
-  } else {
-    (*description_)[path_ + name] = absl::StrJoin(*values, " ");
-  }
-}
 
 constexpr int64_t kMostSteps = 100000000;
 
@@ -145,7 +126,6 @@ void DeclareFlow(SettingFields* fields, FlowTraining* flow) {
   fields->Number("slide_speed", 0, 100, &flow->slide_speed);
   fields->Number("least_remaining", 1e-6, 1, &flow->least_remaining);
   fields->Number("noise_share", 0, 2, &flow->noise_share);
-  if (fields->Has("kept_share")) fields->Share("kept_share", &flow->kept_share);
   if (fields->Has("class_balance")) fields->Share("class_balance", &flow->class_balance);
 }
 
@@ -154,7 +134,6 @@ void DeclareDrift(SettingFields* fields, FlowTraining::Drift* drift) {
   fields->Number("tilt", 0, 4, &drift->tilt);
   fields->Number("bend", 0, 4, &drift->bend);
   fields->Number("turn", 0, 4, &drift->turn);
-  if (fields->Has("twist")) fields->Number("twist", 0, 4, &drift->twist);
   fields->Number("root", 0, 10, &drift->root);
   fields->Number("height", 0, 10, &drift->height);
   fields->Number("joints", 0, 10, &drift->joints);

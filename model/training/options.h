@@ -67,7 +67,6 @@ struct FlowTraining {
   double slide_speed = 0.3;       // metres per second; a captured foot below it stands
   double least_remaining = 0.15;  // losses are divided by 1 - t, but at least by this
   double noise_share = 1;         // of the noise of training that the checkpoint's answers have
-  double kept_share = 0;          // of the weights that the run began with, in the checkpoint's
   // The power of the spread of its class by which a clip's loss is divided: 0 counts metres, 1
   // counts errors relative to how far the followers of the class move.
   double class_balance = 0;
@@ -88,7 +87,6 @@ struct FlowTraining {
     double tilt = 0;      // radians, of the whole body about a point on the floor
     double bend = 0;      // radians, of everything except the legs about the hips
     double turn = 0;      // radians, about the vertical
-    double twist = 0;     // radians, of everything above the hips about the vertical
     double root = 0;      // metres along the floor
     double height = 0;    // metres
     double joints = 0;    // metres, of each joint independently

@@ -175,13 +175,6 @@ absl::StatusOr<checkpoint::Checkpoint> ReadFrom(const RunPlan& plan,
   return from;
 }
 
-absl::Status CheckKeptShare(const RunPlan& plan) {
-  const FlowTraining* flow = FlowIn(plan.options);
-  if (flow == nullptr || flow->kept_share == 0 || !plan.from.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("flow.kept_share: expected 0 without --from, got ", flow->kept_share));
-}
-
 absl::Status StartFrom(const RunPlan& plan, const checkpoint::Checkpoint& from,
                        EpochTrainer* trainer) {
   if (plan.from.empty()) return absl::OkStatus();
@@ -243,27 +236,9 @@ absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& datase
   return Write(plan, std::move(from));
 }
 
-// Moves the trained weights back, a share of the way, to those that the run began with.
-void KeepShare(const TrainingOptions& options, const checkpoint::Checkpoint& from,
-               std::vector<checkpoint::Tensor>* tensors) {
-  const FlowTraining* flow = FlowIn(options);
-  if (flow == nullptr || flow->kept_share == 0) return;
-  for (checkpoint::Tensor& tensor : *tensors) {
-    if (tensor.name == "base.poses" || tensor.name == "noise.roots") continue;  // measured
-    for (const checkpoint::Tensor& first : from.tensors) {
-      if (first.name != tensor.name || first.shape != tensor.shape) continue;
-      for (size_t i = 0; i < tensor.values.size(); ++i) {
-        tensor.values[i] = static_cast<float>(flow->kept_share * first.values[i] +
-                                              (1 - flow->kept_share) * tensor.values[i]);
-      }
-    }
-  }
-}
-
 absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
                     const std::vector<int>& train, checkpoint::Manifest manifest,
-                    const checkpoint::Checkpoint& from, const EpochReport& last,
-                    EpochTrainer* trainer, std::ostream* progress) {
+                    const EpochReport& last, EpochTrainer* trainer, std::ostream* progress) {
   manifest.git_revision = kGitRevision;
   // A run that was killed after its last epoch has no report of it any more.
   if (last.epoch > 0) manifest.metrics["training.reconstruction"] = last.reconstruction;
@@ -271,9 +246,7 @@ absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
     manifest.metrics["validation.afd"] = trainer->best_afd();
     manifest.metrics["validation.epoch"] = static_cast<double>(trainer->best_epoch());
   }
-  std::vector<checkpoint::Tensor> tensors = trainer->BestTensors();
-  KeepShare(plan.options, from, &tensors);
-  checkpoint::Checkpoint checkpoint{std::move(manifest), std::move(tensors), {}};
+  checkpoint::Checkpoint checkpoint{std::move(manifest), trainer->BestTensors(), {}};
   DUET_RETURN_IF_ERROR(AddCritic(plan, dataset, train, progress, &checkpoint));
   return Write(plan, std::move(checkpoint));
 }
@@ -301,7 +274,6 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
                          std::ostream* progress) {
   DUET_RETURN_IF_ERROR(CheckAgainst(plan.options, whole));
   DUET_RETURN_IF_ERROR(CheckStillness(plan.options, whole));
-  DUET_RETURN_IF_ERROR(CheckKeptShare(plan));
   if (fs::exists(CheckpointFolder(plan))) {
     *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
     return absl::OkStatus();
@@ -368,7 +340,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
               << " is kept: least error on what was held back, "
               << absl::StrFormat("%.4f m", trainer->best_afd()) << "\n";
   }
-  return Finish(plan, dataset, train, manifest, from, report, trainer.get(), progress);
+  return Finish(plan, dataset, train, manifest, report, trainer.get(), progress);
 }
 
 }  // namespace duet::training

@@ -12,6 +12,7 @@
 #include "absl/strings/str_join.h"
 #include "model/base/program_flags.h"
 #include "model/base/program_output.h"
+#include "model/base/status_macros.h"
 #include "model/checkpoint/manifest.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/network/exceptions.h"
@@ -19,6 +20,9 @@
 #include "model/training/run.h"
 
 namespace {
+
+namespace dataset = duet::dataset;
+namespace training = duet::training;
 
 struct Arguments {
   std::string data;
@@ -39,23 +43,20 @@ struct Arguments {
 };
 
 absl::StatusOr<std::string> ReadConfig(const std::string& config) {
-  if (const duet::training::NamedConfig* named = duet::training::FindConfig(config)) {
+  if (const training::NamedConfig* named = training::FindConfig(config)) {
     return std::string(named->json);
   }
   std::ifstream in(config, std::ios::binary);
-  if (!in) {
-    const std::string names = absl::StrJoin(
-        duet::training::NamedConfigs(), ", ",
-        [](std::string* out, const duet::training::NamedConfig& one) { out->append(one.name); });
-    return absl::NotFoundError(absl::StrCat(
-        "--config ", config, ": no such file, and no configuration of that name (", names, ")"));
-  }
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  if (in) return std::string(std::istreambuf_iterator<char>(in), {});
+  const std::string names = absl::StrJoin(
+      training::NamedConfigs(), ", ",
+      [](std::string* out, const training::NamedConfig& one) { out->append(one.name); });
+  return absl::NotFoundError(absl::StrCat(
+      "--config ", config, ": no such file, and no configuration of that name (", names, ")"));
 }
 
-absl::StatusOr<duet::training::TrainingOptions> ReadOptions(const Arguments& arguments) {
-  absl::StatusOr<std::string> json = ReadConfig(arguments.config);
-  if (!json.ok()) return json.status();
+absl::StatusOr<training::TrainingOptions> ReadOptions(const Arguments& arguments) {
+  DUET_TRY(const std::string json, ReadConfig(arguments.config));
   std::vector<std::pair<std::string, std::string>> replacements;
   for (const std::string& setting : arguments.settings) {
     const size_t equals = setting.find('=');
@@ -65,14 +66,14 @@ absl::StatusOr<duet::training::TrainingOptions> ReadOptions(const Arguments& arg
     }
     replacements.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
   }
-  return duet::training::ParseConfig(*json, replacements);
+  return training::ParseConfig(json, replacements);
 }
 
-// The part of a run's plan that does not depend on the protocol.
-duet::training::RunPlan CommonPlan(const Arguments& arguments,
-                                   const duet::training::TrainingOptions& options,
-                                   const duet::dataset::Dataset& dataset) {
-  duet::training::RunPlan plan;
+// The runs of the protocol.
+absl::StatusOr<std::vector<training::RunPlan>> Plans(const Arguments& arguments,
+                                                     const training::TrainingOptions& options,
+                                                     const dataset::Dataset& dataset) {
+  training::RunPlan plan;
   plan.options = options;
   plan.model_name =
       arguments.name.empty() ? duet::checkpoint::ToPlainName(dataset.name) : arguments.name;
@@ -81,91 +82,57 @@ duet::training::RunPlan CommonPlan(const Arguments& arguments,
   plan.from = arguments.from;
   plan.critic_only = arguments.critic_only;
   plan.device = arguments.device;
-  return plan;
-}
-
-std::vector<duet::training::RunPlan> PlanOnAll(const Arguments& arguments,
-                                               duet::training::RunPlan plan,
-                                               const duet::dataset::Dataset& dataset) {
-  for (size_t i = 0; i < dataset.sequences.size(); ++i) plan.train.push_back(static_cast<int>(i));
-  plan.title = "all";
-  plan.folder = std::filesystem::path(arguments.out) / "all";
-  return {plan};
-}
-
-absl::StatusOr<std::vector<duet::training::RunPlan>> PlanFolds(
-    const Arguments& arguments, duet::training::RunPlan plan,
-    const duet::dataset::Dataset& dataset) {
-  std::vector<duet::training::RunPlan> plans;
-  for (const std::string& subject : dataset.Subjects()) {
-    if (!arguments.fold.empty() && subject != arguments.fold) continue;
-    absl::StatusOr<duet::dataset::Split> split = duet::dataset::LeaveSubjectOut(dataset, subject);
-    if (!split.ok()) return split.status();
-    plan.train = split->train;
-    plan.title = "without " + subject;
-    plan.folder = std::filesystem::path(arguments.out) / subject;
+  std::vector<training::RunPlan> plans;
+  const auto add = [&](const std::string& title, const std::string& folder,
+                       const std::vector<int>& train) {
+    plan.title = title;
+    plan.folder = std::filesystem::path(arguments.out) / folder;
+    plan.train = train;
     plans.push_back(plan);
-  }
-  if (!plans.empty()) return plans;
-  return LeaveSubjectOut(dataset, arguments.fold).status();  // says whom the data has
-}
-
-absl::StatusOr<std::vector<duet::training::RunPlan>> PlanHalves(
-    const Arguments& arguments, duet::training::RunPlan plan,
-    const duet::dataset::Dataset& dataset) {
-  std::vector<duet::training::RunPlan> plans;
-  for (const uint64_t seed : arguments.seeds) {
-    absl::StatusOr<duet::dataset::Split> split = duet::dataset::SplitInHalves(dataset, seed);
-    if (!split.ok()) return split.status();
-    plan.train = split->train;
-    plan.title = absl::StrCat("half ", seed);
-    plan.folder = std::filesystem::path(arguments.out) / absl::StrCat("half-", seed);
-    plans.push_back(plan);
+  };
+  if (arguments.protocol == "loso") {
+    for (const std::string& subject : dataset.Subjects()) {
+      if (!arguments.fold.empty() && subject != arguments.fold) continue;
+      DUET_TRY(const dataset::Split split, LeaveSubjectOut(dataset, subject));
+      add("without " + subject, subject, split.train);
+    }
+    // Says whom the data has.
+    if (plans.empty()) return LeaveSubjectOut(dataset, arguments.fold).status();
+  } else if (arguments.protocol == "half") {
+    for (const uint64_t seed : arguments.seeds) {
+      DUET_TRY(const dataset::Split split, SplitInHalves(dataset, seed));
+      add(absl::StrCat("half ", seed), absl::StrCat("half-", seed), split.train);
+    }
+  } else {
+    add("all", "all", AllSequences(dataset));
   }
   return plans;
 }
 
-absl::StatusOr<std::vector<duet::training::RunPlan>> Plans(
-    const Arguments& arguments, const duet::training::TrainingOptions& options,
-    const duet::dataset::Dataset& dataset) {
-  const duet::training::RunPlan common = CommonPlan(arguments, options, dataset);
-  if (arguments.protocol == "loso") return PlanFolds(arguments, common, dataset);
-  if (arguments.protocol == "half") return PlanHalves(arguments, common, dataset);
-  return PlanOnAll(arguments, common, dataset);
-}
-
 // Adds the leaders without followers, if the arguments name any.
-absl::Status AddLeaders(const Arguments& arguments, duet::dataset::Dataset* dataset) {
+absl::Status AddLeaders(const Arguments& arguments, dataset::Dataset* dataset) {
   if (arguments.leaders.empty()) return absl::OkStatus();
-  absl::StatusOr<std::vector<duet::dataset::LoneLeader>> leaders =
-      duet::dataset::ReadLoneLeaders(arguments.leaders, dataset->skeleton, dataset->frame_rate_hz);
-  if (!leaders.ok()) return leaders.status();
+  DUET_TRY(dataset->lone_leaders,
+           dataset::ReadLoneLeaders(arguments.leaders, dataset->skeleton, dataset->frame_rate_hz));
   int frames = 0;
-  for (const duet::dataset::LoneLeader& leader : *leaders) frames += leader.poses.frame_count();
-  std::cout << "leaders without followers: " << leaders->size() << " motions, "
+  for (const auto& leader : dataset->lone_leaders) frames += leader.poses.frame_count();
+  std::cout << "leaders without followers: " << dataset->lone_leaders.size() << " motions, "
             << std::lround(frames / dataset->frame_rate_hz) << " s\n";
-  dataset->lone_leaders = *std::move(leaders);
   return absl::OkStatus();
 }
 
 absl::Status Train(const Arguments& arguments) {
-  if (absl::Status status = duet::training::SetTrainingThreads(arguments.threads); !status.ok()) {
-    return status;
-  }
-  absl::StatusOr<duet::training::TrainingOptions> options = ReadOptions(arguments);
-  if (!options.ok()) return options.status();
-  absl::StatusOr<duet::dataset::Dataset> dataset = duet::dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  for (const std::string& note : dataset->notes) std::cout << "assumed: " << note << "\n";
-  if (absl::Status status = AddLeaders(arguments, &*dataset); !status.ok()) return status;
-  absl::StatusOr<std::vector<duet::training::RunPlan>> plans = Plans(arguments, *options, *dataset);
-  if (!plans.ok()) return plans.status();
-  std::cout << "model: " << plans->front().model_name << " " << arguments.version << "\n";
-  for (const duet::training::RunPlan& plan : *plans) {
-    absl::Status status =
-        duet::training::RunTraining(plan, *dataset, isatty(STDOUT_FILENO) != 0, &std::cout);
-    if (!status.ok()) return status;
-    std::cout << "checkpoint: " << duet::training::CheckpointFolder(plan).string() << "\n";
+  DUET_RETURN_IF_ERROR(training::SetTrainingThreads(arguments.threads));
+  DUET_TRY(const training::TrainingOptions options, ReadOptions(arguments));
+  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
+  for (const std::string& note : dataset.notes) std::cout << "assumed: " << note << "\n";
+  DUET_RETURN_IF_ERROR(AddLeaders(arguments, &dataset));
+  DUET_TRY(const std::vector<training::RunPlan> plans, Plans(arguments, options, dataset));
+  std::cout << "model: " << plans.front().model_name << " " << arguments.version << "\n";
+  for (const training::RunPlan& plan : plans) {
+    DUET_RETURN_IF_ERROR(
+        training::RunTraining(plan, dataset, isatty(STDOUT_FILENO) != 0, &std::cout));
+    std::cout << "checkpoint: " << training::CheckpointFolder(plan).string() << "\n";
   }
   return absl::OkStatus();
 }

@@ -57,8 +57,8 @@ float Off(const Poses& poses, const Poses& captured, int frame) {
 
 TEST(Drift, TargetReturnsFromEachErrorToTheCapturedMotion) {
   using Options = FlowTraining::Drift;
-  for (double Options::*error : {&Options::tilt, &Options::bend, &Options::turn, &Options::twist,
-                                 &Options::root, &Options::height, &Options::joints}) {
+  for (double Options::*error : {&Options::tilt, &Options::bend, &Options::turn, &Options::root,
+                                 &Options::height, &Options::joints}) {
     Options options;
     options.*error = 0.3;
     options.frames = 10;
@@ -87,30 +87,6 @@ TEST(Drift, BendDoesNotMoveTheLegs) {
   }
   const int head = told.skeleton.Find("head");
   EXPECT_GT(Distance(told.target.at(0, head), told.captured.at(0, head)), 0.05f);
-}
-
-TEST(Drift, TwistTurnsWhatIsAboveTheHips) {
-  FlowTraining::Drift options;
-  options.twist = 0.6;
-  Told told = Standing(2);
-  Drift(options, &told);
-  for (const char* name :
-       {"torso", "left_hip", "left_knee", "left_foot", "right_hip", "right_knee", "right_foot"}) {
-    const int joint = told.skeleton.Find(name);
-    EXPECT_EQ(told.target.at(0, joint), told.captured.at(0, joint)) << name;
-  }
-  const auto shoulders = [&](const Poses& poses) {
-    const Vec3 across = poses.at(0, told.skeleton.Find("right_shoulder")) -
-                        poses.at(0, told.skeleton.Find("left_shoulder"));
-    return std::atan2(across.x, across.z);
-  };
-  EXPECT_GT(std::abs(shoulders(told.target) - shoulders(told.captured)), 0.1);
-  EXPECT_LT(std::abs(told.target.at(0, 0).y - told.captured.at(0, 0).y), 1e-6f);
-  const std::vector<float> before = MedianBoneLengths(told.skeleton, told.captured);
-  Poses first(0, told.skeleton.joint_count());
-  first.Append(told.target[0]);
-  const std::vector<float> after = MedianBoneLengths(told.skeleton, first);
-  for (size_t b = 0; b < before.size(); ++b) EXPECT_NEAR(after[b], before[b], 1e-5f) << b;
 }
 
 // A swaying pair of which `known` follower frames are told, labels that differ in every frame.

@@ -53,7 +53,6 @@ TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   FlowTraining& flow = FlowOf(&options_);
   flow.several_known = 1;
   flow.own.share = flow.live.share = flow.leaders.share = flow.drift.share = 0.5;
-  flow.drift.twist = 0.4;
   flow.stillness = {0.5, 0.2, 0.2, 0.2, 0.5};
   flow.energy.from = 0.5;
   FlowTrainer straight = Make();

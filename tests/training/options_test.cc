@@ -75,7 +75,6 @@ TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
   EXPECT_THAT(refusal("flow.unlabelled", "2"), HasSubstr("flow.unlabelled"));
   EXPECT_THAT(refusal("leaders.share", "1.5"), HasSubstr("leaders.share"));
   EXPECT_THAT(refusal("stillness.ends", "2"), HasSubstr("stillness.ends"));
-  EXPECT_THAT(refusal("drift.twist", "-1"), HasSubstr("drift.twist"));
   EXPECT_THAT(refusal("optimiser.schedule", "constant"),
               HasSubstr("optimiser: unknown field \"last_share\""));
   const auto tuned = ParseTrainingOptions(FlowJson(), {{"generator.steps", "5"}});
@@ -87,11 +86,9 @@ TEST(TrainingOptionsTest, ConfigurationsOfVersionOneAreRead) {
   nlohmann::json old = nlohmann::json::parse(FlowJson());
   old.erase("leaders");
   old.erase("stillness");
-  old["drift"].erase("twist");
   const auto options = ParseTrainingOptions(old.dump());
   ASSERT_THAT(options, IsOk());
   EXPECT_EQ(Describe(*options).at("leaders.share"), "0");
-  EXPECT_EQ(Describe(*options).at("drift.twist"), "0");
   EXPECT_EQ(Describe(*options).at("stillness.pauses"), "0");
 }
 

@@ -157,36 +157,6 @@ TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
   }
 }
 
-TEST_F(RunTest, KeepsAShareOfTheWeightsThatItBeganWith) {
-  UseFlow();
-  plan_.options.optimiser.warm_up_steps = 1;
-  FlowOf(&plan_.options).kept_share = 0.4;
-  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
-                             "flow.kept_share: expected 0 without --from, got 0.4"));
-  std::vector<checkpoint::Checkpoint> written;
-  for (const double share : {0.0, 0.0, 0.4}) {  // first, trained on, trained on and moved back
-    FlowOf(&plan_.options).kept_share = share;
-    plan_.folder = folder_.path() / absl::StrCat("run", written.size());
-    ASSERT_THAT(Go(), IsOk());
-    const auto read = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-    ASSERT_THAT(read, IsOk());
-    if (written.empty()) plan_.from = CheckpointFolder(plan_);
-    written.push_back(*read);
-  }
-  bool moved = false;
-  for (size_t i = 0; i < written[0].tensors.size(); ++i) {
-    for (size_t v = 0; v < written[0].tensors[i].values.size(); ++v) {
-      const float first = written[0].tensors[i].values[v];
-      const float trained = written[1].tensors[i].values[v];
-      moved = moved || std::abs(trained - first) > 1e-3f;
-      ASSERT_NEAR(written[2].tensors[i].values[v], 0.4f * first + 0.6f * trained, 1e-5f)
-          << written[0].tensors[i].name;
-    }
-  }
-  EXPECT_TRUE(moved);
-  EXPECT_EQ(written[2].manifest.training.at("flow.kept_share"), "0.4");
-}
-
 TEST_F(RunTest, AStateOfOtherLeadersIsRejected) {
   plan_.options = SmallFlowOptions();
   FlowOf(&plan_.options).leaders.share = 0.5;
