@@ -46,6 +46,7 @@ constexpr float kAround = 0.95f;
 // Corrections come and go over these times. Seconds.
 constexpr double kBodySeconds = 0.25, kTurnSeconds = 0.4, kHandSeconds = 0.1, kHoldSeconds = 0.2;
 constexpr double kNear = 0.02, kIdle = 0.1;
+constexpr double kWholeWish = 0.03;  // a wish of this length has its whole weight, metres
 constexpr int kRounds = 2;
 
 struct Capsule {
@@ -72,13 +73,6 @@ Vec3 FacingOf(const motion::Skeleton& skeleton, const body::Body& body,
     return Unit(Level(JointAt(pose, pair.left) - JointAt(pose, pair.right)));
   };
   return Unit(Cross(across(*skeleton.hips) + across(*body.shoulders), kUp));
-}
-
-// Weights of wishes: frames without one hardly count.
-std::vector<double> WeightsOf(const std::vector<Vec3>& wishes) {
-  std::vector<double> weights;
-  for (const Vec3 wish : wishes) weights.push_back(wish == Vec3{} ? kIdle : 1);
-  return weights;
 }
 
 // 1 up to `near`, 0 from `far` on.
@@ -197,7 +191,7 @@ class Correction {
         if (deep > 0) wish += (out == Vec3{} ? Vec3{0, 0, 1} : out) * deep;
         wishes.push_back(wish);
       }
-      const std::vector<Vec3> shifts = SmoothShift(Cost(kBodySeconds), WeightsOf(wishes), wishes);
+      const std::vector<Vec3> shifts = Follow(wishes, kBodySeconds);
       for (int t = encounter_.given; t < frames_; ++t) {
         for (Vec3& joint : follower_[t]) joint += shifts[static_cast<std::size_t>(t)];
       }
@@ -246,6 +240,14 @@ class Correction {
 
  private:
   CorrectionCost Cost(double seconds) const { return {rate_, seconds, kNear, encounter_.given}; }
+  // Frames without a wish hardly count, nor do those with one that rounding makes.
+  std::vector<Vec3> Follow(const std::vector<Vec3>& wishes, double seconds) const {
+    std::vector<double> weights;
+    for (const Vec3 wish : wishes) {
+      weights.push_back(kIdle + (1 - kIdle) * std::min(1.0, double{Norm(wish)} / kWholeWish));
+    }
+    return SmoothShift(Cost(seconds), weights, wishes);
+  }
   const ContactRule& RuleAt(int t) const { return encounter_.rules[static_cast<std::size_t>(t)]; }
   // From the follower's root to the leader's, along the floor.
   Vec3 ToLeader(int t) const {
@@ -352,7 +354,7 @@ class Correction {
       moves = moves || wish != Vec3{};
       wishes.push_back(wish);
     }
-    if (moves) MoveHand(arm, SmoothShift(Cost(kHandSeconds), WeightsOf(wishes), wishes));
+    if (moves) MoveHand(arm, Follow(wishes, kHandSeconds));
   }
 
   // An elbow without a side of its own points down and back.
