@@ -24,8 +24,7 @@
 namespace duet::engine {
 namespace {
 
-// Windows that are measured need share no more than the frame they meet in.
-constexpr int kOverlap = 1;
+constexpr int kOverlap = 1;  // windows that are measured share the frame they meet in
 
 // How far a follower may be turned away in a class in which it does not face its leader, degrees.
 constexpr float kTurnedRound = 180;
@@ -119,8 +118,6 @@ motion::Poses GivenFrames(const ModelDescription& description, const SynthesisWi
   return given;
 }
 
-using Windows = absl::Span<const SynthesisWindow* const>;
-
 // Most inputs of one evaluation, unless there are more windows: candidates must not multiply the
 // memory of a batch.
 constexpr std::size_t kMostTogether = 32;
@@ -142,7 +139,8 @@ class NetworkSynthesizer : public Synthesizer {
 
   const ModelDescription& description() const override { return description_; }
 
-  std::vector<WindowResult> Synthesize(Windows windows) const override {
+  std::vector<WindowResult> Synthesize(
+      absl::Span<const SynthesisWindow* const> windows) const override {
     if (windows.empty()) return {};
     std::vector<Task> tasks;
     std::vector<NetworkInput> inputs;
