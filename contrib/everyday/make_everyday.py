@@ -24,10 +24,10 @@ from everyday import captures, dataset_folder, staged
 STRETCHES = Path(__file__).with_name("stretches.tsv")
 LEADERS = ("walk", "turn", "sit", "stand", "talk", "dance", "exercise", "pick", "ball")
 LEADER_SECONDS = (2.0, 12.0)
-# Of the second run: of the staged pairs, one in so many, and their first seconds. A captured trial is
-# written several times if it is too short for so many windows of the training (2 s, every .5 s).
-STAGED_PART, STAGED_SECONDS = 4, 4.0
-FEWEST_WINDOWS, WINDOW_SECONDS, STRIDE_SECONDS = 16, 2.0, 0.5
+# First seconds of the staged pairs; of these, the second run has one in so many. Captured trials are
+# written as often as it takes for each class to have so many windows of the training (2 s, every .5 s).
+FIRST_SECONDS, STAGED_SECONDS, STAGED_PART = 8.0, 4.0, 4
+CLASS_WINDOWS, WINDOW_SECONDS, STRIDE_SECONDS = 96, 2.0, 0.5
 
 
 def _print_summary(title, pairs):
@@ -66,18 +66,23 @@ def _write_leaders(archive, classes, folder):
     print(f"leaders: {written}")
 
 
-def _copies(pair):
-    """The pair as often as its class needs it, so that trials of two seconds count."""
-    windows = 1 + max(0, int((pair.seconds - WINDOW_SECONDS) / STRIDE_SECONDS))
-    count = 1 if captures.LEFT_OUT in pair.subjects else -(-FEWEST_WINDOWS // windows)
-    return [dataclasses.replace(pair, name=pair.name + (f"_copy{i + 1}" if i else ""))
-            for i in range(count)]
+def _copies(captured):
+    """The pairs as often as their classes need them, so that classes of few and short trials count."""
+    trials = collections.Counter(pair.spans[0][0] for pair in captured
+                                 if captures.LEFT_OUT not in pair.subjects)
+    copies = []
+    for pair in captured:
+        windows = 1 + max(0, int((pair.seconds - WINDOW_SECONDS) / STRIDE_SECONDS))
+        count = -(-CLASS_WINDOWS // trials[pair.spans[0][0]] // windows)
+        for i in range(1 if captures.LEFT_OUT in pair.subjects else count):
+            copies.append(dataclasses.replace(pair, name=pair.name + (f"_copy{i + 1}" if i else "")))
+    return copies
 
 
-def _beginning(pair):
-    frames = round(STAGED_SECONDS * captures.FRAME_RATE_HZ)
+def _beginning(pair, seconds):
+    frames = round(seconds * captures.FRAME_RATE_HZ)
     people = tuple(person[:frames] for person in pair.people)
-    spans = tuple((name, begin, min(end, STAGED_SECONDS)) for name, begin, end in pair.spans)
+    spans = tuple((name, begin, min(end, seconds)) for name, begin, end in pair.spans)
     return dataclasses.replace(pair, people=people, spans=spans)
 
 
@@ -90,13 +95,14 @@ def _make(options):
                                     f"{captures.SHORTEST_SECONDS:g} s, got none")
     classes = _single_classes(options.table)
     from_single = staged.pairs(single, classes)
-    part = [_beginning(pair) for pair in from_single[::STAGED_PART]]
-    copied = [copy for pair in captured for copy in _copies(pair)]
-    for name, pairs in (("first", captured + from_single), ("second", copied + part)):
+    part = [_beginning(pair, STAGED_SECONDS) for pair in from_single[::STAGED_PART]]
+    from_single = [_beginning(pair, FIRST_SECONDS) for pair in from_single]
+    copied = _copies(captured)
+    for name, pairs in (("first", copied + from_single), ("second", copied + part)):
         dataset_folder.write(pairs, trials.joints, trials.parents, captures.FRAME_RATE_HZ,
                              options.out / name)
     _write_leaders(single, classes, options.out / "leaders")
-    for title, pairs in (("captured", captured), ("first", captured + from_single),
+    for title, pairs in (("captured", captured), ("first", copied + from_single),
                          ("second", copied + part)):
         _print_summary(title, pairs)
 

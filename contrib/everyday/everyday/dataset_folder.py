@@ -7,7 +7,6 @@ CLASSES = {
     "meet_hands": {"symmetric": True, "touches": True},
     "pull": {"touches": True},
     "walk": {"symmetric": True, "touches": True},
-    "mirror": {"symmetric": True},
 }
 
 # Duet's names of the joints of the archives.

@@ -1,7 +1,7 @@
 """Pairs staged from captures of single people, for a first run of the training.
 
 They show how one person moves, not how two people react: walkers get a second walker beside them,
-dancers their mirror image, and who reaches out somebody who reaches out to the same place.
+and who reaches out, or walks and reaches out at the end, somebody who reaches out to the same place.
 """
 
 import numpy
@@ -9,10 +9,8 @@ import numpy
 from everyday.captures import FRAME_RATE_HZ, Pair, resample
 
 BESIDE_METRES = (0.6, 0.85)     # between two people who walk side by side
-MIRROR_METRES = (0.6, 0.85)     # from a person to the plane of the mirror
 HANDS_METRES = (0.02, 0.1)      # between two hands that meet
-LATE_FRAMES = 3                 # the second person of a walk or a mirror is late by at most this
-NEAR_METRES = 0.5               # a mirrored person stays this near its first place
+LATE_FRAMES = 3                 # the second person is late by at most this
 REACH_METRES = 0.45             # a hand this far before the hips is offered
 REACH_HEIGHTS = (-0.05, 0.8)    # of an offered hand above the hips, metres
 REACH_ASIDE_METRES = 0.3        # an offered hand is this near the middle of the body
@@ -20,10 +18,16 @@ STANDING_METRES = 0.75          # the hips of a person who stands are higher
 APART_METRES = 0.55             # the hips of two people whose hands meet stay this far apart
 BEFORE_SECONDS, AFTER_SECONDS = (1.0, 2.0), (0.6, 1.4)  # of a stretch, around the meeting of hands
 SHORTEST_SECONDS = 2.0
+# Of a walk that ends in front of a partner: until it slows down, while it does, and at rest.
+WALK_SECONDS, HALT_SECONDS, REST_SECONDS = (0.3, 1.2), (0.6, 1.0), (0.6, 1.4)
+APPROACH_EVERY_FRAMES = 90      # of a walk; each becomes a walk of its own
+LEAST_WALK_METRES = 0.4         # who walks less far does not walk up
+RAISE_SECONDS = (0.4, 0.7)      # to reach out, before the hands meet
+UPPER_ARM, FOREARM = (0.1, -0.85, 0.5), (0.1, 0.0, 1.0)  # of an offered hand: inwards, up, ahead
+FIVE = 0.9                      # a hand is offered at most this much higher
 
 # The column `class` of the table of single captures, and what becomes of it.
 WALKS = ("walk", "turn")
-MIRRORED = ("dance", "exercise", "martial", "stand", "jump", "talk")
 REACHES = ("talk", "stand", "pick", "throw", "exercise")
 
 
@@ -46,14 +50,6 @@ def _facing(positions, joints, yaw):
     return _turned(moved, yaw - _yaw(moved[0], joints))
 
 
-def mirrored(positions, joints):
-    """The mirror image through the plane x = 0."""
-    swap = [joints.index({"L": "R", "R": "L"}.get(name[0], name[0]) + name[1:])
-            if name[1:] in ("Shoulder", "Elbow", "Wrist", "Hand", "Hip", "Knee", "Ankle", "Toe")
-            else i for i, name in enumerate(joints)]
-    return positions[:, swap] * [-1, 1, 1]
-
-
 def _late(leader, follower, random):
     late = int(random.integers(0, LATE_FRAMES + 1))
     return leader[late:], follower[:len(follower) - late]
@@ -73,17 +69,6 @@ def beside(positions, joints, random):
     return _late(leader, leader - path[:, None] + (path + offset)[:, None], random)
 
 
-def mirror(positions, joints, random):
-    """A person and its mirror image, face to face: (leader, follower), or None if it walks."""
-    leader = _facing(positions, joints, 0)
-    if numpy.hypot(leader[:, 0, 0], leader[:, 0, 2]).max() > NEAR_METRES:
-        return None
-    image = mirrored(leader, joints)
-    # A mirror image through the plane z = distance.
-    image = _turned(image, numpy.pi) + [0, 0, 2 * random.uniform(*MIRROR_METRES)]
-    return _late(leader, image, random)
-
-
 def _reach(positions, joints, hand):
     """How far an offered hand is before the hips: [frames], metres; 0 where it is not offered."""
     yaw = numpy.array([_yaw(pose, joints) for pose in positions])
@@ -96,11 +81,21 @@ def _reach(positions, joints, hand):
     return ahead * is_offered
 
 
-def meetings(positions, joints, random):
-    """Two people whose hands meet where one of them reaches farthest: [(leader, follower)].
+def _met(leader, at, joints, hand, random):
+    """(leader, follower), whose hands meet in frame `at`, or None if their bodies are too near.
 
     The follower is the leader, turned by half a turn about the place where the hands meet.
     """
+    yaw = _yaw(leader[at], joints)
+    ahead = numpy.array([numpy.sin(yaw), 0, numpy.cos(yaw)])
+    place = leader[at, joints.index(hand)] + ahead * random.uniform(*HANDS_METRES) / 2
+    follower = _turned(leader - place * [1, 0, 1], numpy.pi) + place * [1, 0, 1]
+    apart = numpy.linalg.norm((leader - follower)[:, 0] * [1, 0, 1], axis=1)
+    return _late(leader, follower, random) if apart.min() > APART_METRES else None
+
+
+def meetings(positions, joints, random):
+    """Two people whose hands meet where one of them reaches farthest: [(leader, follower)]."""
     found = []
     for hand in ("RHand", "LHand"):
         reach = _reach(positions, joints, hand)
@@ -111,14 +106,63 @@ def meetings(positions, joints, random):
             reach[max(0, at - before - after):at + before + after] = 0
             first = max(0, at - before)
             leader = positions[first:at + after]
-            yaw = _yaw(positions[at], joints)
-            ahead = numpy.array([numpy.sin(yaw), 0, numpy.cos(yaw)])
-            place = positions[at, joints.index(hand)] + ahead * random.uniform(*HANDS_METRES) / 2
-            follower = _turned(leader - place * [1, 0, 1], numpy.pi) + place * [1, 0, 1]
-            apart = numpy.linalg.norm((leader - follower)[:, 0] * [1, 0, 1], axis=1)
-            if apart.min() > APART_METRES:
-                found.append(_late(leader, follower, random))
+            people = _met(leader, at - first, joints, hand, random)
+            if people is not None:
+                found.append(people)
     return found
+
+
+def _halting(positions, at, joints, random):
+    """The walk around frame `at`, which slows down, stands and stays: a motion, or None."""
+    walk, halt, rest = (round(random.uniform(*seconds) * FRAME_RATE_HZ)
+                        for seconds in (WALK_SECONDS, HALT_SECONDS, REST_SECONDS))
+    ankles = [joints.index(side + "Ankle") for side in "LR"]
+    feet = numpy.linalg.norm(positions[:, ankles[0]] - positions[:, ankles[1]], axis=1)
+    # It stops in the frame in which the feet are closest. Half of the time passes while it slows down.
+    last = at + int(feet[at:at + FRAME_RATE_HZ // 2].argmin())
+    first = last - walk - halt // 2
+    if first < 0 or last >= len(positions):
+        return None
+    slow = numpy.arange(1, halt + 1) - numpy.arange(1, halt + 1) ** 2 / (2 * halt)
+    times = numpy.concatenate([numpy.arange(walk + 1), walk + slow, numpy.full(rest, walk + halt / 2)])
+    return _at(positions, numpy.minimum(first + times, last))
+
+
+def _at(positions, times):
+    before = numpy.minimum(times.astype(int), len(positions) - 2)
+    share = (times - before)[:, None, None]
+    return (1 - share) * positions[before] + share * positions[before + 1]
+
+
+def _reaching(positions, joints, side, share, higher):
+    """The motion with an arm that is offered, `share` of the way in each frame."""
+    result = positions.copy()
+    arm = [joints.index(side + part) for part in ("Shoulder", "Elbow", "Wrist", "Hand")]
+    yaw = numpy.array([_yaw(pose, joints) for pose in positions])
+    inwards = 1 if side == "R" else -1
+    for (above, joint), offered in zip(zip(arm, arm[1:]), (UPPER_ARM, FOREARM, FOREARM)):
+        bone = positions[:, joint] - positions[:, above]
+        length = numpy.linalg.norm(bone, axis=1, keepdims=True)
+        wanted = numpy.array(offered) * [inwards, 1, 1] + [0, higher, 0]
+        wanted = numpy.stack([_turned(wanted, one) for one in yaw]) / numpy.linalg.norm(wanted)
+        way = bone / length * (1 - share[:, None]) + wanted * share[:, None]
+        result[:, joint] = result[:, above] + way / numpy.linalg.norm(way, axis=1, keepdims=True) * length
+    return result
+
+
+def approach(positions, at, joints, random):
+    """Two people who walk up to each other and reach out, or None: (leader, follower)."""
+    motion = _halting(positions, at, joints, random)
+    if motion is None or numpy.linalg.norm((motion[-1] - motion[0])[0] * [1, 0, 1]) < LEAST_WALK_METRES:
+        return None
+    side = random.choice(["R", "R", "R", "L"])
+    rest = int(numpy.count_nonzero((motion == motion[-1]).all(axis=(1, 2))))
+    met = len(motion) - rest + int(random.integers(0, max(1, rest // 3)))
+    raised = round(random.uniform(*RAISE_SECONDS) * FRAME_RATE_HZ)
+    share = numpy.clip((numpy.arange(len(motion)) - met + raised) / raised, 0, 1)
+    motion = _reaching(motion, joints, side, share * share * (3 - 2 * share),
+                       max(0.0, random.uniform(-FIVE, FIVE)))
+    return _met(motion, len(motion) - 1, joints, side + "Hand", random)
 
 
 def pairs(archive, classes, seed=0):
@@ -137,8 +181,8 @@ def pairs(archive, classes, seed=0):
     for key, motion in motions.items():
         if classes[key] in WALKS:
             add(key, "walk", beside(motion, archive.joints, random))
-        if classes[key] in MIRRORED:
-            add(key, "mirror", mirror(motion, archive.joints, random))
+            for number, at in enumerate(range(FRAME_RATE_HZ, len(motion), APPROACH_EVERY_FRAMES), start=1):
+                add(f"{key}_up_{number}", "meet_hands", approach(motion, at, archive.joints, random))
         if classes[key] in REACHES:
             for number, people in enumerate(meetings(motion, archive.joints, random), start=1):
                 add(f"{key}_{number}", "meet_hands", people)

@@ -99,14 +99,20 @@ class StagedTest(unittest.TestCase):
         self.assertGreater(distances.min(), staged.BESIDE_METRES[0] - .01)
         self.assertLess(distances.max(), staged.BESIDE_METRES[1] + .2)  # late by some frames
 
-    def test_a_mirror_image_raises_the_other_hand_face_to_face(self):
-        leader, follower = staged.mirror(person(90), JOINTS, self.random)
-        self.assertGreater(leader[-1, JOINTS.index("RHand"), 1], 1.5)
-        self.assertGreater(follower[-1, JOINTS.index("LHand"), 1], 1.5)
-        self.assertLess(follower[-1, JOINTS.index("RHand"), 1], 1.2)
-        for pose, ahead in ((leader[0], 1), (follower[0], -1)):
-            self.assertGreater(ahead * (pose[JOINTS.index("LToe")] - pose[JOINTS.index("LAnkle")])[2], 0)
-        self.assertIsNone(staged.mirror(person(90, speed=.03), JOINTS, self.random))
+    def test_who_walks_up_stops_and_reaches_out(self):
+        walk = person(150, speed=.04)
+        leader, follower = staged.approach(walk, 60, JOINTS, self.random)
+        hands = [JOINTS.index(side + "Hand") for side in "LR"]
+        apart = numpy.linalg.norm(leader[:, hands] - follower[:, hands], axis=2).min(axis=1)
+        self.assertLess(apart[-1], staged.HANDS_METRES[1] + .01)
+        self.assertGreater(apart[0], .8)
+        hips = numpy.linalg.norm((leader - follower)[:, 0] * FLOOR, axis=1)
+        self.assertGreater(hips[0] - hips[-1], 2 * staged.LEAST_WALK_METRES)
+        self.assertTrue((leader[-1] == leader[-10]).all())
+        arm = [JOINTS.index("RElbow"), JOINTS.index("RWrist")]
+        lengths = numpy.linalg.norm(leader[:, arm[1]] - leader[:, arm[0]], axis=1)
+        self.assertLess(numpy.ptp(lengths), 1e-6)
+        self.assertIsNone(staged.approach(person(150), 60, JOINTS, self.random))
 
     def test_hands_meet_where_one_person_reaches_farthest(self):
         leader = person(120)
@@ -202,11 +208,11 @@ class MakeEverydayTest(unittest.TestCase):
     def test_writes_two_data_sets_and_leaders(self):
         code, output = self.make()
         self.assertEqual(code, 0, output)
-        for name, pairs in (("first", ["18_01", "walk_s_02_01"]),
-                            ("second", ["18_01", *(f"18_01_copy{i}" for i in range(2, 17)),
-                                        "walk_s_02_01"])):
+        copies = [f"18_01_copy{i}" for i in range(2, make_everyday.CLASS_WINDOWS + 1)]
+        for name, staged_pairs in (("first", ["meet_hands_s_02_01_up_1", "walk_s_02_01"]),
+                                   ("second", ["walk_s_02_01"])):
             files = sorted((self.out / name / "pairs").iterdir())
-            self.assertEqual([file.stem for file in files], sorted(pairs))
+            self.assertEqual([file.stem for file in files], sorted(["18_01", *copies, *staged_pairs]))
             lines = files[0].read_text().splitlines()
             self.assertEqual(len(lines), 72)
             self.assertEqual(len(lines[0].split(",")), 1 + 2 * 22 * 3)
