@@ -60,14 +60,15 @@ class ClientServerTest(tools.ServedTest):
         models = {}
         for model in json.loads(result.stdout)["models"]:  # the newest version first
             models.setdefault(model["name"], model)
-        self.assertEqual(set(models), {"sbu", "k3hi", "salsa"})
+        self.assertEqual(set(models), {"sbu", "k3hi", "salsa", "everyday"})
         self.assertTrue(models["sbu"]["is_default"])
         self.assertFalse(models["k3hi"].get("is_default", False))
         self.assertEqual(set(models["sbu"]["interaction_classes"]), set(tools.CLASSES))
         self.assertIn("point", models["k3hi"]["interaction_classes"])
         for name, model in models.items():
-            self.assertEqual(len(model["joint_names"]), 22 if name == "salsa" else JOINTS)
-            self.assertEqual(model["free_for_all_uses"], name == "salsa")
+            is_free = name in ("salsa", "everyday")
+            self.assertEqual(len(model["joint_names"]), 22 if is_free else JOINTS)
+            self.assertEqual(model["free_for_all_uses"], is_free)
         for_people = tools.duet("models", "--server", self.server.address)
         self.assertIn(f"sbu@{models['sbu']['version']}, default", for_people.stdout)
         self.assertIn(f"k3hi@{models['k3hi']['version']}", for_people.stdout)

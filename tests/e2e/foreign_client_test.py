@@ -33,8 +33,9 @@ class ForeignClientTest(tools.ServedTest):
         models = self.stub.ListModels(synthesis_pb2.ListModelsRequest(),
                                       timeout=tools.RUN_SECONDS).models
         self.assertEqual([(model.name, model.is_default) for model in models],
-                         [("k3hi", False), ("salsa", False), ("sbu", True), ("sbu", False)])
-        self.assertEqual(set(models[2].interaction_classes), set(tools.CLASSES))
+                         [("everyday", False), ("k3hi", False), ("salsa", False), ("sbu", True),
+                          ("sbu", False)])
+        self.assertEqual(set(models[3].interaction_classes), set(tools.CLASSES))
         for model in models:
             self.assertEqual(len(model.bones), len(model.joint_names) - 1)
 

@@ -62,7 +62,7 @@ class InstallTest(unittest.TestCase):
         run(CMAKE, "--build", build)
         with tools.running_server() as server:
             self.assertRegex(run(build / "consumer", server.address),
-                             r"^k3hi@\d+\nsalsa@\d+\n(sbu@\d+\n)+leader\.frame_count\n$")
+                             r"^everyday@\d+\nk3hi@\d+\nsalsa@\d+\n(sbu@\d+\n)+leader\.frame_count\n$")
 
     def test_the_client_builds_without_libtorch(self):
         # The same commands make the same files: compiling them a second time would show no more.

@@ -104,14 +104,15 @@ async function sampleOf(name, joints) {
 }
 
 // {rest, moves, isDance}, where moves are [{name, label, clip}], or null if no sample has the
-// model's joints.
+// model's joints. A model without a sample of its classes has no moves: its leader stands and is dragged.
 async function movesFor(model, samples, body) {
   const joints = model.joint_names;
-  if (model.interaction_classes.includes('basic') && samples.includes('salsa')) {
-    const dance = await sampleOf('salsa', joints);
-    return dance && danceOf(dance, body, model.bones);
-  }
   const names = model.interaction_classes.filter((name) => samples.includes(name)).slice(0, 9);
+  if (!names.length && samples.includes('salsa')) {
+    const dance = await sampleOf('salsa', joints);
+    if (!dance || model.interaction_classes.includes('basic')) return dance && danceOf(dance, body, model.bones);
+    return {isDance: false, rest: standing(dance.frames[0], body, model.bones), moves: []};
+  }
   const motions = await Promise.all(names.map((name) => sampleOf(name, joints)));
   if (!motions.length || motions.includes(null)) return null;
   return {
