@@ -10,7 +10,6 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/answer.h"
 #include "client/batch/durable_file.h"
-#include "client/batch/record.h"
 #include "model/motion/coordinates.h"
 
 namespace duet::client::batch {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/batch/answer.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/recipe.h"
-#include "client/batch/record.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 

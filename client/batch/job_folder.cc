@@ -8,8 +8,8 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "client/batch/answer.h"
 #include "client/batch/journal.h"
-#include "client/batch/record.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
 #include "model/messages/message_text.h"

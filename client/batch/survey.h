@@ -12,11 +12,11 @@
 #include "absl/container/flat_hash_map.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/batch/answer.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/leaders.h"
 #include "client/batch/plan.h"
-#include "client/batch/record.h"
 
 namespace duet::client::batch {
 

@@ -14,7 +14,6 @@
 #include "absl/time/time.h"
 #include "client/cli/command.h"
 #include "client/cli/flags.h"
-#include "client/cli/report.h"
 #include "client/cli/server.h"
 #include "client/error_details.h"
 #include "client/internal/connect.h"

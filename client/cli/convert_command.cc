@@ -12,7 +12,6 @@
 #include "client/cli/flags.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
-#include "client/cli/report.h"
 #include "model/base/file.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"

@@ -12,7 +12,6 @@
 #include "absl/strings/str_join.h"
 #include "client/cli/command.h"
 #include "client/cli/motion_input.h"
-#include "client/cli/report.h"
 #include "model/base/counted.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"

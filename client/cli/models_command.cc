@@ -7,7 +7,6 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/cli/command.h"
-#include "client/cli/report.h"
 #include "client/cli/server.h"
 #include "nlohmann/json.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "client/cli/report.h"
+#include "client/cli/command.h"
 
 namespace duet::client::cli {
 

@@ -16,7 +16,6 @@
 #include "client/cli/flags.h"
 #include "client/cli/output.h"
 #include "client/cli/reaction.h"
-#include "client/cli/report.h"
 #include "client/cli/server.h"
 #include "model/base/counted.h"
 #include "model/formats/motion_file.h"

@@ -4,10 +4,14 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/connection.h"
+#include "client/internal/reply_assembler.h"
+#include "client/internal/retry.h"
+#include "client/internal/stub.h"
 #include "client/options.h"
 #include "grpcpp/channel.h"
 
@@ -35,6 +39,34 @@ struct TlsNames {
 // Checks what gRPC does not: with text that is no PEM, it makes a channel that has no address to
 // call, as if there were no server. INVALID_ARGUMENT, never with any part of the key.
 absl::Status CheckTls(const TlsOptions& tls, const TlsNames& names = {});
+
+// Makes calls through a stub: converts values to protos and back, sets the deadline, retries, and
+// validates the replies.
+class ConnectionImpl final : public Connection {
+ public:
+  ConnectionImpl(std::shared_ptr<Stub> stub, const ClientOptions& options,
+                 RetryEnvironment environment = SystemEnvironment());
+
+  absl::StatusOr<std::vector<ModelInfo>> ListModels() override;
+  absl::StatusOr<ModelDetails> GetModel(const ModelChoice& choice) override;
+  absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
+                                             const ChunkCallback& on_chunk) override;
+  void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) override;
+  absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(const LiveRequest& request,
+                                                         LiveCallbacks callbacks) override;
+
+ private:
+  RetryLimits Limits(const CallContext& call) const;
+  absl::Status RunStream(const CallContext& call, const v1::SynthesizeRequest& request,
+                         ReplyAssembler* reply, absl::Time* first_chunk);
+  absl::Time Deadline() const { return environment_.now() + deadline_; }
+
+  std::shared_ptr<Stub> stub_;
+  absl::Duration deadline_, wait_;
+  std::string server_address_;
+  RetryOptions retry_;
+  RetryEnvironment environment_;
+};
 
 }  // namespace duet::client::internal
 

@@ -103,6 +103,12 @@ std::vector<ClassWeight> Mix(const std::vector<ClassWeight>& a, const std::vecto
   return weights;
 }
 
+void KeepSign(const motion::UnitQuaternion& before, motion::UnitQuaternion* q) {
+  if (before.x * q->x + before.y * q->y + before.z * q->z + before.w * q->w < 0) {
+    *q = {-q->x, -q->y, -q->z, -q->w};
+  }
+}
+
 }  // namespace
 
 std::vector<ClassWeight> LabelTrack::At(int frame) const {
@@ -139,6 +145,42 @@ std::vector<WeightKeyframe> LabelTrack::From(int frame) const {
   std::size_t first = 0;
   while (first + 1 < keyframes_.size() && keyframes_[first + 1].frame <= frame) ++first;
   return {keyframes_.begin() + static_cast<std::ptrdiff_t>(first), keyframes_.end()};
+}
+
+absl::StatusOr<std::optional<motion::JointRotations>> LiveRotations::Read(
+    const v1::FollowerFrames& frames, int known) {
+  const bool expects_rig = wanted_ && !has_rig_;
+  if (frames.rig().empty() == expects_rig) {
+    return absl::InvalidArgumentError(
+        expects_rig
+            ? "frames.rig: expected joints in the first frames of a stream, got none; does the "
+              "server know reply_rotations?"
+            : "frames.rig: expected joints only for rotations, in the first frames, got some");
+  }
+  if (expects_rig) {
+    absl::StatusOr<std::vector<motion::RestJoint>> rig =
+        ReadRig("frames.rig", frames.rig(), joint_count_);
+    if (!rig.ok()) return rig.status();
+    rig_ = *std::move(rig);
+    has_rig_ = true;
+  }
+  absl::Status status =
+      CheckRotations("frames.rotations", frames.rotations(), frames.frame_count(), rig_.size());
+  if (!status.ok()) return status;
+  if (!wanted_) return std::nullopt;
+  motion::JointRotations read{rig_, {}};
+  AppendRotations(frames.rotations(), &read.rotations);
+  const auto width = static_cast<std::ptrdiff_t>(rig_.size());
+  read.rotations.erase(read.rotations.begin(), read.rotations.begin() + known * width);
+  if (read.rotations.empty()) return std::nullopt;
+  if (last_.size() != rig_.size())
+    last_.assign(read.rotations.begin(), read.rotations.begin() + width);
+  for (std::size_t i = 0; i < read.rotations.size(); ++i) {
+    const std::size_t joint = i % rig_.size();
+    KeepSign(last_[joint], &read.rotations[i]);
+    last_[joint] = read.rotations[i];
+  }
+  return read;
 }
 
 absl::StatusOr<LiveState> LiveState::Create(LiveRequest request) {

@@ -1,6 +1,8 @@
 #include "client/internal/proto_conversion.h"
 
+#include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -8,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/request_id.h"
+#include "model/base/text.h"
 
 namespace duet::client::internal {
 namespace {
@@ -63,6 +66,32 @@ absl::Status Fill(const JointConstraint& constraint, int index, v1::JointConstra
 bool HasJoint(const v1::Bone& bone, int joints) {
   const auto count = static_cast<uint32_t>(joints);
   return bone.parent_joint() < count && bone.child_joint() < count;
+}
+
+// Of the norm from 1; rounding to float gives 1e-7.
+constexpr float kNormTolerance = 1e-3F;
+
+template <typename... Parts>
+absl::Status Invalid(const Parts&... parts) {
+  return absl::InvalidArgumentError(absl::StrCat(parts...));
+}
+
+absl::Status CheckJoint(const std::string& field, const v1::RigJoint& joint, int index,
+                        int joint_count) {
+  const bool has_parent =
+      index == 0 ? joint.parent() == -1 : joint.parent() >= 0 && joint.parent() < index;
+  if (!has_parent) {
+    return Invalid(field, ".parent: expected ",
+                   index == 0 ? "-1" : absl::StrCat("0 to ", index - 1), ", got ", joint.parent());
+  }
+  if (joint.joint() >= static_cast<uint32_t>(joint_count)) {
+    return Invalid(field, ".joint: expected 0 to ", joint_count - 1, ", got ", joint.joint());
+  }
+  const v1::Point& offset = joint.offset();
+  if (!std::isfinite(offset.x()) || !std::isfinite(offset.y()) || !std::isfinite(offset.z())) {
+    return Invalid(field, ".offset: expected finite values, got others");
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -230,6 +259,56 @@ absl::Status CheckRequestId(const std::string& request_id) {
   const absl::Status status = base::CheckRequestId(request_id);
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat("request_id: ", status.message()));
+}
+
+absl::StatusOr<std::vector<motion::RestJoint>> ReadRig(
+    const std::string& field, const google::protobuf::RepeatedPtrField<v1::RigJoint>& rig,
+    int joint_count) {
+  std::vector<motion::RestJoint> joints;
+  std::set<std::string> names;
+  for (const v1::RigJoint& joint : rig) {
+    const int index = static_cast<int>(joints.size());
+    const std::string indexed = absl::StrCat(field, "[", index, "]");
+    absl::Status status = CheckJoint(indexed, joint, index, joint_count);
+    if (!status.ok()) return status;
+    if (!names.insert(joint.name()).second) {
+      return Invalid(indexed, ".name: expected a name once, got ", base::Quoted(joint.name()),
+                     " again");
+    }
+    joints.push_back({joint.name(),
+                      joint.parent(),
+                      {joint.offset().x(), joint.offset().y(), joint.offset().z()},
+                      static_cast<int>(joint.joint())});
+  }
+  return joints;
+}
+
+absl::Status CheckRotations(const std::string& field,
+                            const google::protobuf::RepeatedField<float>& values,
+                            std::size_t frames, std::size_t rig_joints) {
+  const std::size_t wanted = frames * rig_joints * 4;
+  if (static_cast<std::size_t>(values.size()) != wanted) {
+    return Invalid(field, ": expected ", wanted, " values for ", frames, " frames, got ",
+                   values.size());
+  }
+  for (int i = 0; i < values.size(); i += 4) {
+    float squares = 0;
+    for (int k = i; k < i + 4; ++k) squares += values[k] * values[k];
+    // Negated, so that NaN is rejected.
+    if (!(std::abs(std::sqrt(squares) - 1) <= kNormTolerance)) {
+      return Invalid(field, "[", i, "..", i + 3, "]: expected a unit quaternion, got norm ",
+                     std::sqrt(squares));
+    }
+  }
+  return absl::OkStatus();
+}
+
+void AppendRotations(const google::protobuf::RepeatedField<float>& values,
+                     std::vector<motion::UnitQuaternion>* rotations) {
+  const float* value = values.data();
+  for (int i = 0; i < values.size(); i += 4, value += 4) {
+    rotations->push_back({value[0], value[1], value[2], value[3]});
+  }
 }
 
 }  // namespace duet::client::internal

@@ -17,6 +17,7 @@
 #include "duet/v1/reaction.pb.h"
 #include "duet/v1/synthesis.pb.h"
 #include "google/protobuf/repeated_field.h"
+#include "model/motion/joint_rotations.h"
 #include "model/motion/vec3.h"
 
 namespace duet::client::internal {
@@ -73,6 +74,24 @@ absl::Status FillReaction(const ReactionOptions& options, Message* out) {
   out->set_clean_up(ToProto(options.clean_up));
   return absl::OkStatus();
 }
+
+// The rig and the rotations of a reply. Errors: INVALID_ARGUMENT naming the field of the reply.
+
+// `field`: that of the rig in the reply. Fails unless the first joint is the only root, every
+// parent comes before its children, names are unique, offsets are finite, and joints are in [0,
+// joint_count).
+absl::StatusOr<std::vector<motion::RestJoint>> ReadRig(
+    const std::string& field, const google::protobuf::RepeatedPtrField<v1::RigJoint>& rig,
+    int joint_count);
+
+// Fails unless `values` has a unit quaternion for each of `frames` and each of `rig_joints`.
+absl::Status CheckRotations(const std::string& field,
+                            const google::protobuf::RepeatedField<float>& values,
+                            std::size_t frames, std::size_t rig_joints);
+
+// Requires values that CheckRotations accepts.
+void AppendRotations(const google::protobuf::RepeatedField<float>& values,
+                     std::vector<motion::UnitQuaternion>* rotations);
 
 }  // namespace duet::client::internal
 

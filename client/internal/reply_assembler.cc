@@ -7,7 +7,6 @@
 #include "absl/strings/str_cat.h"
 #include "client/internal/grpc_status.h"
 #include "client/internal/proto_conversion.h"
-#include "client/internal/rotations.h"
 
 namespace duet::client::internal {
 namespace {

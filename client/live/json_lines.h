@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "client/live/ends.h"
+#include "client/live/live_run.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/internal/connection_impl.h"
+#include "client/internal/connect.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"

@@ -1,7 +1,6 @@
 // What a live session keeps from one stream to the next: the labels, and the signs of rotations.
 #include "client/internal/live_state.h"
 
-#include "client/internal/rotations.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/matchers.h"

@@ -12,8 +12,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "client/cli/command.h"
-#include "client/cli/report.h"
-#include "client/internal/connect.h"
 #include "client/mocks/mock_connection.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -41,7 +39,7 @@ using test::WriteTestFile;
 constexpr int kFrames = 20;
 
 // Describes a model itself, and leaves live sessions to a real connection.
-std::shared_ptr<Connection> DescribeModel(std::shared_ptr<Connection> live) {
+std::shared_ptr<Connection> DescribeModel(const Client& live) {
   auto connection = std::make_shared<::testing::NiceMock<MockConnection>>();
   ModelDetails details;
   details.model.name = "dancer";
@@ -53,7 +51,7 @@ std::shared_ptr<Connection> DescribeModel(std::shared_ptr<Connection> live) {
   ON_CALL(*connection, GetModel).WillByDefault(::testing::Return(details));
   ON_CALL(*connection, StartLive)
       .WillByDefault([live](const LiveRequest& request, LiveCallbacks callbacks) {
-        return live->StartLive(request, std::move(callbacks));
+        return live.StartLive(request, std::move(callbacks));
       });
   return connection;
 }
@@ -79,9 +77,9 @@ class LiveCommandTest : public ::testing::Test {
     const test::TextInput in(in_);
     const ProgramEnvironment environment{
         [](const ClientOptions& options) -> absl::StatusOr<Client> {
-          absl::StatusOr<std::shared_ptr<Connection>> live = internal::Connect(options);
+          absl::StatusOr<Client> live = Client::Create(options);
           if (!live.ok()) return live.status();
-          return Client(DescribeModel(*std::move(live)));
+          return Client(DescribeModel(*live));
         },
         &out_, &err_, endless_ ? endless_->reader() : in.descriptor()};
     return RunProgram(arguments, environment);

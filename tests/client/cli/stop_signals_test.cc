@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "absl/synchronization/notification.h"
-#include "client/cli/report.h"
+#include "client/cli/command.h"
 #include "gtest/gtest.h"
 
 namespace duet::client::cli {
