@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures of a server's answers: docs/images/reactions.png, and an animation of each class and of a
-dance in docs/images/reactions/. The leaders are samples/; needs chromium, python3-numpy and python3-pil.
+"""Makes the pictures of a server's answers: docs/images/reactions.png, and an animation of each class, of hands
+that meet and of a dance in docs/images/reactions/. The leaders are samples/; needs chromium, python3-numpy and python3-pil.
 
     scripts/make_pictures.py build/release
 """
@@ -33,6 +33,7 @@ UNCHANGED = 255  # the index of a pixel of a film that is as in the picture befo
 STILL = {"width": 467, "height": 396}
 # (leader, labels, frame of the leader)
 STILLS = (("kick", {"kick": 1}, 34), ("hug", {"hug": 1}, 50), ("push", {"hug": 0.5, "push": 0.5}, 34))
+HANDS = ("shake_hands", ["--model=everyday", "--label=meet_hands=1", "--seed=3"])
 # The dance of scripts/demo.sh: its sample and its flags.
 DANCE = ("salsa", ["--model=salsa", *(f"{flag}={value}" for flag, value in
                                       re.findall(r"(--candidates|--seed|--keyframe) (\d\S*)", DEMO.read_text(encoding="utf-8")))])
@@ -114,7 +115,8 @@ def main():
             for leader in tools.CLASSES:
                 save_film(chromium, page_of(server, leader, label_flags({leader: 1}), folder),
                           IMAGES / "reactions" / f"{leader}.gif")
-            save_film(chromium, page_of(server, *DANCE, folder), IMAGES / "reactions" / "dance.gif")
+            for film, (leader, flags) in {"hands": HANDS, "dance": DANCE}.items():
+                save_film(chromium, page_of(server, leader, flags, folder), IMAGES / "reactions" / f"{film}.gif")
             stills = [take_still(chromium, page_of(server, leader, label_flags(labels), folder), frame)
                       for leader, labels, frame in STILLS]
             save_side_by_side(chromium, stills, IMAGES / "reactions.png", folder)
