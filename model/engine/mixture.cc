@@ -30,14 +30,6 @@ constexpr float kFullStrength = 1.25f;
 // larger one changes the request itself.
 constexpr double kMostAvoided = 0.5;
 
-bool IsContact(const ModelDescription& model, std::size_t label) {
-  const std::string& name = model.classes[label];
-  const auto& touching = model.touching_classes;
-  return std::find(touching.begin(), touching.end(), name) != touching.end() ||
-         std::any_of(model.hand_contacts.begin(), model.hand_contacts.end(),
-                     [&](const HandContact& hands) { return hands.interaction_class == name; });
-}
-
 bool Any(const Labels& labels) {
   return std::any_of(labels.begin(), labels.end(), [](float weight) { return weight > 0; });
 }
@@ -103,6 +95,14 @@ Poses Minus(Poses a, const Poses& b) {
 
 }  // namespace
 
+bool ModelDescription::IsContact(int label) const {
+  const std::string& name = classes[static_cast<std::size_t>(label)];
+  return std::find(touching_classes.begin(), touching_classes.end(), name) !=
+             touching_classes.end() ||
+         std::any_of(hand_contacts.begin(), hand_contacts.end(),
+                     [&](const HandContact& hands) { return hands.interaction_class == name; });
+}
+
 Mixture::Mixture(const ModelDescription& model, const body::Body& body, const NetworkInput& window)
     : frames_(window.leader.frame_count()),
       classes_(model.class_count()),
@@ -127,7 +127,7 @@ void Mixture::FindParts(const ModelDescription& model, const body::Body& body,
     const std::size_t label = i % static_cast<std::size_t>(classes_);
     if (weights_[i] < 0) avoided[label] = 1;
     const float wanted = std::max(0.0f, weights_[i]);
-    (IsContact(model, label) ? contact : other)[i] = wanted;
+    (model.IsContact(static_cast<int>(label)) ? contact : other)[i] = wanted;
     requested_[i / static_cast<std::size_t>(classes_)] += wanted;
   }
   for (float& sum : requested_) sum = std::min(1.0f, sum);

@@ -83,6 +83,9 @@ struct ModelDescription {
   bool cleaned_up_by_default() const { return samples && clean_up; }
 
   int class_count() const { return static_cast<int>(classes.size()); }
+
+  // Whether the class is one of contact: bodies touch, or hands meet.
+  bool IsContact(int label) const;
 };
 
 }  // namespace duet::engine

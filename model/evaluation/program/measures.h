@@ -171,6 +171,16 @@ using MixVariant = std::pair<std::string, std::vector<MixedAnswer>>;
 report::Table MixTable(const std::string& title, const std::vector<ClassGeometry>& folds,
                        const std::vector<MixVariant>& variants);
 
+// The judge's probabilities [classes] of the answer to a class, and of the same with another one at
+// -1, and by how much that changes the mean distance of the roots, metres.
+struct AvoidingAnswer {
+  int leader = 0;
+  int own = 0, avoided = 0;
+  std::vector<float> alone = {}, avoiding = {};
+  double moved = 0;
+};
+report::Table AvoidTable(const std::string& title, const std::vector<AvoidingAnswer>& answers);
+
 // How strongly, and when, a follower gives way to what a leader does.
 struct Reaction {
   // How far head and torso go back about the leader's action, metres.
@@ -183,7 +193,11 @@ struct ReactionPair {
   int leader = 0;
   int interaction_class = 0;
   Reaction captured, made;
+  Reaction padded;  // to the same leader, who stands still for a second before and after
 };
+
+// Repeats the first and last frames of both people for a second. Returns the frames added in front.
+int PadSequence(dataset::Sequence* sequence);
 
 // Measures a follower, from 0.3 s before until 1 s after a hand or foot of the leader reaches
 // farthest towards the captured follower. Requires a body with a neck and arms.

@@ -317,4 +317,44 @@ report::Table MixTable(const std::string& title, const std::vector<ClassGeometry
   return table;
 }
 
+report::Table AvoidTable(const std::string& title, const std::vector<AvoidingAnswer>& answers) {
+  using Value = std::function<double(const AvoidingAnswer&)>;
+  const auto probability = [](const std::vector<float>& of, int label) {
+    return double{of[static_cast<size_t>(label)]};
+  };
+  const Value asked = [=](auto& a) { return probability(a.avoiding, a.own); };
+  const Value alone = [=](auto& a) { return probability(a.alone, a.own); };
+  const Value recognised = [](auto& a) { return Likeliest(a.avoiding) == a.own ? 1.0 : 0.0; };
+  const Value recognised_alone = [](auto& a) { return Likeliest(a.alone) == a.own ? 1.0 : 0.0; };
+  const struct {
+    const char* name;
+    Value of, base;  // base: none, or what its mean is divided by
+  } kFigures[] = {
+      {"requested, of alone", asked, alone},
+      {"recognised, of alone", recognised, recognised_alone},
+      {"avoided", [=](auto& a) { return probability(a.avoiding, a.avoided); }, nullptr},
+      {"avoided, alone", [=](auto& a) { return probability(a.alone, a.avoided); }, nullptr},
+      {"distance moved", [](auto& a) { return std::abs(a.moved); }, nullptr}};
+  std::vector<int> leaders;
+  for (const AvoidingAnswer& answer : answers) leaders.push_back(answer.leader);
+  report::Table table = EstimateTable(title, {"own 1, other -1"});
+  for (const auto& figure : kFigures) {
+    const auto mean = [&](const std::vector<size_t>& rows, const Value& value) {
+      std::vector<double> values;
+      for (const size_t i : rows) values.push_back(value(answers[i]));
+      return base::Mean(values);
+    };
+    const auto statistic = [&](const std::vector<size_t>& rows) {
+      const double value = mean(rows, figure.of);
+      return figure.base ? Ratio(value, mean(rows, figure.base)) : value;
+    };
+    AddEstimate(leaders, statistic, &table.rows.emplace_back(report::TableRow{figure.name, {}}));
+  }
+  table.notes = {
+      "Requested, avoided: the judge's probability of the own class and of the class at -1; "
+      "recognised: share of answers whose likeliest class is the own one; of alone: as a ratio to "
+      "the own class at 1 by itself. Distance moved: of the roots, from that answer's, metres."};
+  return table;
+}
+
 }  // namespace duet::evaluation::program

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
 #include "model/body/grade.h"
+#include "model/body/posture.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/measures.h"
 
@@ -62,15 +63,22 @@ body::Grade GradeOf(const dataset::Dataset& dataset, const body::Body& body,
   return sum.Get();
 }
 
-// Answers a leader in its own class, in another one, and in two mixes of both.
+struct Measured {
+  std::vector<MixVariant> mixes = {{"one label", {}}, {"0.5 / 0.5", {}}, {"1 / 1", {}}};
+  std::vector<AvoidingAnswer> avoiding;
+  std::vector<ReactionPair> reactions;
+};
+
+// Answers a leader in its own class, in another one, in two mixes of both, and in its own class
+// with the other one at -1.
 absl::Status MixWith(const dataset::Dataset& dataset, const Meters& meters, int fold,
                      const engine::Synthesizer& model, const Asked& asked, int leader, int other,
-                     int sample, std::vector<MixVariant>* variants) {
+                     int sample, Measured* measured) {
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(leader)];
   const int own = sequence.interaction_class;
   std::vector<LabelledLeader> leaders;
   for (const auto& [own_weight, other_weight] :
-       {std::pair(1.0f, 0.0f), {0.5f, 0.5f}, {1.0f, 1.0f}, {0.0f, 1.0f}}) {
+       {std::pair(1.0f, 0.0f), {0.5f, 0.5f}, {1.0f, 1.0f}, {0.0f, 1.0f}, {1.0f, -1.0f}}) {
     std::vector<float> weights(dataset.classes.size());
     weights[static_cast<size_t>(own)] = own_weight;
     weights[static_cast<size_t>(other)] = other_weight;
@@ -80,19 +88,58 @@ absl::Status MixWith(const dataset::Dataset& dataset, const Meters& meters, int 
   std::vector<metrics::ScoredMotion> motions;
   for (const Poses& answer : answers) motions.push_back({leader, answer});
   const auto judged = meters.judges[static_cast<size_t>(fold)].Judge(dataset, motions);
-  for (size_t v = 0; v < variants->size(); ++v) {
+  const Poses &own_alone = answers[0], &other_alone = answers[3], &avoiding = answers[4];
+  for (size_t v = 0; v < measured->mixes.size(); ++v) {
     MixedAnswer answer{leader, fold, own, other};
     answer.mixed = meters.geometry.Measure(sequence, answers[v]);
-    answer.own_alone = meters.geometry.Measure(sequence, answers.front());
-    answer.other_alone = meters.geometry.Measure(sequence, answers.back());
+    answer.own_alone = meters.geometry.Measure(sequence, own_alone);
+    answer.other_alone = meters.geometry.Measure(sequence, other_alone);
     answer.probabilities = judged.probabilities[v];
-    answer.deviation = Deviation(answers[v], answers.front(), answers.back());
+    answer.deviation = Deviation(answers[v], own_alone, other_alone);
     const body::Grade grade =
         GradeOf(dataset, meters.geometry.body(), sequence.pair.leader, answers[v]);
     answer.twisted = grade.twisted;
     answer.overlapping = grade.overlapping;
     answer.skating = grade.skating;
-    (*variants)[v].second.push_back(std::move(answer));
+    measured->mixes[v].second.push_back(std::move(answer));
+  }
+  const auto distance = [&](const Poses& follower) {
+    return body::RootDistance(sequence.pair.leader.poses, follower, dataset.skeleton);
+  };
+  measured->avoiding.push_back({leader, own, other, judged.probabilities[0],
+                                judged.probabilities[4], distance(avoiding) - distance(own_alone)});
+  return absl::OkStatus();
+}
+
+// Answers leaders in their own classes, as captured and padded.
+absl::Status React(const dataset::Dataset& dataset, const engine::Synthesizer& model,
+                   const Asked& asked, const std::vector<int>& leaders, int sample,
+                   std::vector<ReactionPair>* reactions) {
+  std::vector<dataset::Sequence> sequences;  // each as captured, then padded
+  std::vector<int> padding;
+  for (const int leader : leaders) {
+    const dataset::Sequence& captured = dataset.sequences[static_cast<size_t>(leader)];
+    sequences.insert(sequences.end(), 2, captured);
+    padding.push_back(PadSequence(&sequences.back()));
+  }
+  std::vector<LabelledLeader> labelled;
+  for (size_t i = 0; i < sequences.size(); ++i) {
+    labelled.push_back({&sequences[i],
+                        OneClass(dataset.class_count(), sequences[i].interaction_class),
+                        SeedOf(asked, dataset, leaders[i / 2], sample)});
+  }
+  DUET_TRY(const std::vector<Poses> answers, SynthesizeSequences(model, labelled, asked));
+  for (size_t i = 0; i < leaders.size(); ++i) {
+    const dataset::Sequence& sequence = sequences[2 * i];
+    const auto measure = [&](const Poses& follower) {
+      return MeasureReaction(dataset.skeleton, sequence, follower);
+    };
+    Poses padded = answers[2 * i + 1];
+    padded.DropFront(padding[i]);
+    padded.Resize(sequence.pair.leader.frame_count());
+    reactions->push_back({leaders[i], sequence.interaction_class,
+                          measure(sequence.pair.follower.poses), measure(answers[2 * i]),
+                          measure(padded)});
   }
   return absl::OkStatus();
 }
@@ -118,47 +165,58 @@ absl::Status AddTables(const Experiment& experiment, const MixesFlags& flags, co
                        const FoldModel& model, const Asked& asked, report::Section* section) {
   const dataset::Dataset& dataset = experiment.dataset;
   const std::string name = model.name + StartSuffix(asked.start);
-  std::vector<MixVariant> variants = {{"one label", {}}, {"0.5 / 0.5", {}}, {"1 / 1", {}}};
-  std::vector<ReactionPair> reactions;
+  Measured measured;
+  std::vector<bool> contact;  // of each class
   for (size_t f = 0; f < experiment.folds.size(); ++f) {
     const Fold& fold = experiment.folds[f];
     DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
     DUET_RETURN_IF_ERROR(CheckModelTakes(synthesizer->description(), dataset, asked.start));
     const std::vector<int> leaders = ChooseLeaders(dataset, fold.split.test, flags.leaders);
     const int samples = synthesizer->description().samples ? asked.samples : 1;
-    for (const int leader : flags.Measures(kMixes) ? leaders : std::vector<int>()) {
+    contact.clear();
+    for (int c = 0; c < dataset.class_count(); ++c) {
+      contact.push_back(synthesizer->description().IsContact(c));
+    }
+    std::vector<int> reacting;
+    for (const int leader : leaders) {
+      const auto& some = flags.reaction_classes;
       const int own = dataset.sequences[static_cast<size_t>(leader)].interaction_class;
-      for (int n = 0; n < samples; ++n) {
+      const std::string& of_leader = dataset.classes[static_cast<size_t>(own)];
+      if (some.empty() || std::count(some.begin(), some.end(), of_leader) > 0) {
+        reacting.push_back(leader);
+      }
+    }
+    for (int n = 0; n < samples; ++n) {
+      for (const int leader : flags.Measures(kMixes) ? leaders : std::vector<int>()) {
+        const int own = dataset.sequences[static_cast<size_t>(leader)].interaction_class;
         for (int other = 0; other < dataset.class_count(); ++other) {
           if (other == own) continue;
           DUET_RETURN_IF_ERROR(MixWith(dataset, meters, static_cast<int>(f), *synthesizer, asked,
-                                       leader, other, n, &variants));
+                                       leader, other, n, &measured));
         }
       }
-    }
-    std::vector<int> reacting;
-    for (const int leader : flags.Measures(kReaction) ? leaders : std::vector<int>()) {
-      const auto& some = flags.reaction_classes;
-      const int c = dataset.sequences[static_cast<size_t>(leader)].interaction_class;
-      const bool asked_for =
-          std::count(some.begin(), some.end(), dataset.classes[static_cast<size_t>(c)]) > 0;
-      if (some.empty() || asked_for) reacting.push_back(leader);
-    }
-    DUET_TRY(const auto answers, AnswerWithSamples(*synthesizer, dataset, reacting, asked));
-    for (const metrics::ScoredMotion& answer : Pool(answers)) {
-      const dataset::Sequence& sequence = SequenceOf(dataset, answer);
-      reactions.push_back(
-          {answer.sequence, sequence.interaction_class,
-           MeasureReaction(dataset.skeleton, sequence, sequence.pair.follower.poses),
-           MeasureReaction(dataset.skeleton, sequence, answer.follower)});
+      if (!flags.Measures(kReaction)) continue;
+      DUET_RETURN_IF_ERROR(React(dataset, *synthesizer, asked, reacting, n, &measured.reactions));
     }
     std::cerr << absl::StrCat(name, " without ", fold.subject, ": ", leaders.size(), " leaders\n");
   }
   if (flags.Measures(kMixes)) {
-    section->tables.push_back(MixTable(name + ": mixes", meters.classes, variants));
+    const auto is_contact = [&](int c) { return contact[static_cast<size_t>(c)]; };
+    std::vector<MixVariant> two_kinds = measured.mixes;
+    for (auto& [variant, answers] : two_kinds) {
+      answers.erase(std::remove_if(answers.begin(), answers.end(),
+                                   [&](const MixedAnswer& answer) {
+                                     return is_contact(answer.own) == is_contact(answer.other);
+                                   }),
+                    answers.end());
+    }
+    section->tables.push_back(MixTable(name + ": mixes", meters.classes, measured.mixes));
+    section->tables.push_back(
+        MixTable(name + ": mixes of contact with other classes", meters.classes, two_kinds));
+    section->tables.push_back(AvoidTable(name + ": negatives", measured.avoiding));
   }
   if (flags.Measures(kReaction)) {
-    section->tables.push_back(ReactionTable(name + ": reaction", reactions));
+    section->tables.push_back(ReactionTable(name + ": reaction", measured.reactions));
   }
   return absl::OkStatus();
 }
@@ -169,8 +227,8 @@ absl::StatusOr<report::Section> RunMixes(const MixesFlags& flags) {
   report::Section section = BeginExperiment(
       flags, experiment,
       "The leaders of every left-out subject, answered in mixes of their own class with each other "
-      "class, and in their own class. All answers to one leader have one seed; every leader has "
-      "its "
+      "class, with each other class at -1, and in their own class with the leader held still "
+      "before and after the clip. All answers to one leader have one seed; every leader has its "
       "own. +pose: the input includes the follower's first pose.");
   for (const std::string& start : flags.starts) {
     for (const FoldModel& model : experiment.models) {

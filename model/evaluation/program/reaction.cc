@@ -16,6 +16,7 @@ namespace {
 using motion::Poses;
 using motion::Vec3;
 
+constexpr double kPaddingSeconds = 1;
 // The time about the leader's action in which a follower goes back.
 constexpr double kBeforeActionSeconds = 0.3, kAfterActionSeconds = 1;
 // A series with a smaller deviation has no correlation with another.
@@ -69,7 +70,24 @@ int ActionFrame(const motion::Skeleton& skeleton, const body::Body& body, const 
   return frame;
 }
 
+// Repeats the first and last frames.
+void Pad(int frames, motion::Clip* clip) {
+  Poses padded(0, clip->joint_count());
+  for (int t = 0; t < frames; ++t) padded.Append(clip->poses[0]);
+  padded.Append(clip->poses.all());
+  for (int t = 0; t < frames; ++t) padded.Append(clip->poses[clip->frame_count() - 1]);
+  clip->poses = std::move(padded);
+}
+
 }  // namespace
+
+int PadSequence(dataset::Sequence* sequence) {
+  const double rate = sequence->pair.leader.frame_rate_hz;
+  const int frames = static_cast<int>(std::lround(kPaddingSeconds * rate));
+  Pad(frames, &sequence->pair.leader);
+  Pad(frames, &sequence->pair.follower);
+  return frames;
+}
 
 Reaction MeasureReaction(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                          const Poses& follower) {
@@ -106,35 +124,42 @@ report::Table ReactionTable(const std::string& title, const std::vector<Reaction
     leaders.push_back(pairs[row].leader);
     by_class[pairs[row].interaction_class].push_back(row);
   }
-  report::Table table = EstimateTable(title, {"answers"});
-  const auto add = [&](const std::string& name, const Statistic& statistic) {
-    AddEstimate(leaders, statistic, &table.rows.emplace_back(report::TableRow{name, {}}));
+  report::Table table = EstimateTable(title, {"as captured", "padded"});
+  // Adds a row with the statistic of each kind of answer.
+  using Answer = Reaction ReactionPair::*;
+  const auto add = [&](const std::string& name, const auto& statistic) {
+    report::TableRow& row = table.rows.emplace_back(report::TableRow{name, {}});
+    for (const Answer answer : {&ReactionPair::made, &ReactionPair::padded}) {
+      AddEstimate(
+          leaders, [&](const std::vector<size_t>& rows) { return statistic(rows, answer); }, &row);
+    }
   };
   for (const bool head : {true, false}) {
     const auto part = head ? &Reaction::head : &Reaction::torso;
     const Value captured = [part](const ReactionPair& pair) { return pair.captured.*part; };
-    const Value made = [part](const ReactionPair& pair) { return pair.made.*part; };
     const std::string name = head ? "head" : "torso";
-    add("amplitude, " + name, [=](const std::vector<size_t>& rows) {
+    add("amplitude, " + name, [&](const std::vector<size_t>& rows, Answer answer) {
+      const Value made = [=](const ReactionPair& pair) { return pair.*answer.*part; };
       return Ratio(mean(rows, made), mean(rows, captured));
     });
     std::map<int, double> usual;
     for (const auto& [c, rows] : by_class) usual[c] = mean(rows, captured);
-    add(name + " goes back", [=](const std::vector<size_t>& rows) {
+    add(name + " goes back", [&](const std::vector<size_t>& rows, Answer answer) {
       return mean(rows, [&](const ReactionPair& pair) {
-        return made(pair) > usual.at(pair.interaction_class) / 2 ? 1.0 : 0.0;
+        return pair.*answer.*part > usual.at(pair.interaction_class) / 2 ? 1.0 : 0.0;
       });
     });
   }
-  add("correlation", [=](const std::vector<size_t>& rows) {
-    return mean(rows, [](const ReactionPair& pair) { return pair.made.correlation; });
+  add("correlation", [&](const std::vector<size_t>& rows, Answer answer) {
+    return mean(rows, [answer](const ReactionPair& pair) { return (pair.*answer).correlation; });
   });
   table.notes = {
       "Amplitude: how far head and torso go away from the leader, from 0.3 s before to 1 s after "
       "the leader reaches farthest, as a ratio of means to the captured followers. Goes back: "
       "share of answers that go back by more than half of the captured mean of their class. "
       "Correlation: of the velocity away from the leader with the captured follower's, mean over "
-      "the answers. Low, high: 95 % interval by the bootstrap over leaders."};
+      "the answers. Padded: the leader stands still for a second before and after. Low, high: 95 % "
+      "interval by the bootstrap over leaders."};
   return table;
 }
 

@@ -59,8 +59,10 @@ TEST(CommandsTest, MixesHasATableForEveryMeasureAndStart) {
   ASSERT_THAT(section, IsOk());
   std::vector<std::string> titles;
   for (const nlohmann::json& table : section->at("tables")) titles.push_back(table.at("title"));
-  EXPECT_THAT(titles, ElementsAre("duet: mixes", "duet: reaction", "duet+pose: mixes",
-                                  "duet+pose: reaction"));
+  EXPECT_THAT(titles, ElementsAre("duet: mixes", "duet: mixes of contact with other classes",
+                                  "duet: negatives", "duet: reaction", "duet+pose: mixes",
+                                  "duet+pose: mixes of contact with other classes",
+                                  "duet+pose: negatives", "duet+pose: reaction"));
 }
 
 TEST(CommandsTest, ToldApartHasAColumnAFold) {

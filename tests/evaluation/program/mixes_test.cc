@@ -168,5 +168,15 @@ TEST(MixesTest, TableHasAFigureAVariant) {
   EXPECT_EQ(value("third class", 3), 1);
 }
 
+TEST(MixesTest, AvoidingIsComparedWithTheClassAlone) {
+  const report::Table table = AvoidTable("n", {{0, 0, 1, {0.8f, 0.2f}, {0.6f, 0.4f}, 0.1},
+                                               {1, 0, 1, {0.8f, 0.2f}, {0.2f, 0.8f}, -0.3}});
+  std::vector<double> values;
+  for (const report::TableRow& row : table.rows) values.push_back(row.values[0]);
+  EXPECT_THAT(values,
+              ElementsAre(::testing::DoubleNear(0.5, 1e-6), 0.5, ::testing::DoubleNear(0.6, 1e-6),
+                          ::testing::DoubleNear(0.2, 1e-6), ::testing::DoubleNear(0.2, 1e-9)));
+}
+
 }  // namespace
 }  // namespace duet::evaluation::program
