@@ -67,6 +67,13 @@ synthesize() {
   echo
 }
 
+# A handshake by the model of everyday interactions, which is free for all uses.
+hands() {
+  duet synthesize --server "${address}" --model everyday --leader samples/shake_hands.bvh --label meet_hands=1 --seed 3 \
+    --out "${out_dir}/hands.html" --out "${out_dir}/hands.glb"
+  echo
+}
+
 # A dance of 30 s: the lead of the sample comes, asks for two turns, and leaves.
 dance() {
   duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --candidates 4 \
@@ -88,6 +95,7 @@ main() {
   echo
   duet models --server "${address}"
   echo
+  hands
   synthesize kick samples/kick.bvh kick=1
   synthesize hug samples/hug.bvh hug=1
   synthesize half_hug_half_push samples/hug.bvh hug=0.5 push=0.5
