@@ -16,7 +16,6 @@ import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 IMAGES = SOURCE / "docs" / "images"
-DEMO = SOURCE / "scripts" / "demo.sh"
 os.environ["DUET_SOURCE_DIR"] = str(SOURCE)
 os.environ["DUET_BIN_DIR"] = str(pathlib.Path(sys.argv[1]).resolve() / "bin")
 sys.path.insert(0, str(SOURCE / "tests" / "e2e"))
@@ -35,8 +34,9 @@ STILL = {"width": 467, "height": 396}
 STILLS = (("kick", {"kick": 1}, 34), ("hug", {"hug": 1}, 50), ("push", {"hug": 0.5, "push": 0.5}, 34))
 HANDS = ("shake_hands", ["--model=everyday", "--label=meet_hands=1", "--seed=3"])
 # The dance of scripts/demo.sh: its sample and its flags.
+DANCE_OF_DEMO = (SOURCE / "scripts" / "demo.sh").read_text(encoding="utf-8").partition("dance() {")[2]
 DANCE = ("salsa", ["--model=salsa", *(f"{flag}={value}" for flag, value in
-                                      re.findall(r"(--candidates|--seed|--keyframe) (\d\S*)", DEMO.read_text(encoding="utf-8")))])
+                                      re.findall(r"(--candidates|--seed|--keyframe) (\d\S*)", DANCE_OF_DEMO))])
 # A frame of the page without its controls, as a data URL.
 PICTURE = ("(() => {{ const stage = document.getElementById('stage'); stage.player.seek({frame}); stage.draw();"
            " return stage.canvas.toDataURL(); }})()")
