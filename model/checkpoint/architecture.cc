@@ -28,8 +28,6 @@ int WholeBodyInput(const Manifest& manifest, const PaperArchitecture& paper) {
   return input;
 }
 
-}  // namespace
-
 void ReadFields(base::ObjectReader* reader, PaperArchitecture* out) {
   out->variant = ReadNamed(reader, "variant", kVariantNames);
   out->follower_start = reader->Bool("follower_start");
@@ -48,6 +46,8 @@ nlohmann::ordered_json ToJson(const PaperArchitecture& paper) {
           {"base_pose", paper.base_pose},
           {kArchitectureKind, PaperArchitecture::kKind}};
 }
+
+}  // namespace
 
 std::vector<SliceShape> SliceShapes(const Manifest& manifest) {
   const auto& paper = std::get<PaperArchitecture>(manifest.architecture);
@@ -114,20 +114,6 @@ constexpr char kHiddenFrames[] = "hidden_frames";
 constexpr int64_t kModulations = 4;  // shift and scale, before attention and before feed-forward
 constexpr int64_t kStartStates = 2;  // without a start, with a start
 
-FlowArchitecture::Noise ReadNoise(base::ObjectReader* reader) {
-  FlowArchitecture::Noise noise;
-  const std::string at = reader->PathOf("noise");
-  const nlohmann::json& object = reader->Object("noise");
-  if (!reader->ok()) return noise;
-  base::ObjectReader fields(object, at);
-  noise.frame_length = fields.Number("frame_length", 0.1, 1000);
-  noise.constant_share = fields.Number("constant_share", 0, 1);
-  noise.ramp_frames = static_cast<int>(fields.Int("ramp_frames", 1, kMaxUnits));
-  noise.white = fields.Number("white", 0, 10);
-  reader->Update(fields.Finish());
-  return noise;
-}
-
 void AddLinear(const std::string& name, int64_t outputs, int64_t inputs,
                std::vector<TensorSpec>* specs) {
   specs->push_back({name + ".weight", {outputs, inputs}});
@@ -145,8 +131,6 @@ void AddBlock(const std::string& name, const FlowArchitecture& flow,
   AddLinear(name + ".contract", width, flow.feed_forward, specs);
 }
 
-}  // namespace
-
 void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
   out->width = static_cast<int>(reader->Int("width", 1, kMaxUnits));
   out->blocks = static_cast<int>(reader->Int("blocks", 1, kMaxBlocks));
@@ -161,7 +145,12 @@ void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
   out->frame_labels = reader->Has(kFrameLabels) && reader->Bool(kFrameLabels);
   out->hidden_frames = reader->Has(kHiddenFrames) && reader->Bool(kHiddenFrames);
   out->offset_scale = reader->Number("offset_scale", 1e-6, 1e3);
-  out->noise = ReadNoise(reader);
+  ReadSection(reader, "noise", [&noise = out->noise](base::ObjectReader* fields) {
+    noise.frame_length = fields->Number("frame_length", 0.1, 1000);
+    noise.constant_share = fields->Number("constant_share", 0, 1);
+    noise.ramp_frames = static_cast<int>(fields->Int("ramp_frames", 1, kMaxUnits));
+    noise.white = fields->Number("white", 0, 10);
+  });
   out->steps = static_cast<int>(reader->Int("steps", 1, kMaxSteps));
   out->guidance = reader->Number("guidance", 0, 10);
   if (reader->ok() && out->frame_labels && out->guidance != 1) {
@@ -191,6 +180,8 @@ nlohmann::ordered_json ToJson(const FlowArchitecture& flow) {
   if (flow.hidden_frames) json[kHiddenFrames] = true;
   return json;
 }
+
+}  // namespace
 
 int64_t FrameFeatureCount(const Manifest& manifest, const FlowArchitecture& flow) {
   const int64_t pose = 3 * int64_t{manifest.model.skeleton.joint_count()};

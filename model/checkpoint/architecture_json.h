@@ -61,6 +61,16 @@ auto ReadNamed(base::ObjectReader* reader, const std::string& key, const Table& 
   return std::begin(table)->value;
 }
 
+// Reads an object in the field `key`: calls `read(fields)` with its reader, and records its errors.
+template <typename Read>
+void ReadSection(base::ObjectReader* reader, const std::string& key, const Read& read) {
+  const nlohmann::json& object = reader->Object(key);
+  if (!reader->ok()) return;
+  base::ObjectReader fields(object, reader->PathOf(key));
+  read(&fields);
+  reader->Update(fields.Finish());
+}
+
 // The field of a JSON object that names its architecture.
 inline constexpr char kArchitectureKind[] = "kind";
 
@@ -70,13 +80,6 @@ Architecture ReadArchitecture(bool has_kind, base::ObjectReader* reader);
 
 // Includes the kind.
 nlohmann::ordered_json ToJson(const Architecture& architecture);
-
-// The same for each alternative. ReadFields reads every field except the kind.
-void ReadFields(base::ObjectReader* reader, PaperArchitecture* out);
-nlohmann::ordered_json ToJson(const PaperArchitecture& paper);
-
-void ReadFields(base::ObjectReader* reader, FlowArchitecture* out);
-nlohmann::ordered_json ToJson(const FlowArchitecture& flow);
 
 }  // namespace duet::checkpoint
 

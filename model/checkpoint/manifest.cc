@@ -1,9 +1,11 @@
 #include "model/checkpoint/manifest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -11,7 +13,6 @@
 #include "absl/time/time.h"
 #include "model/base/strict_json.h"
 #include "model/checkpoint/architecture_json.h"
-#include "model/checkpoint/leader_json.h"
 #include "model/engine/windows.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/skeleton_json.h"
@@ -21,6 +22,7 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+using Feature = engine::LeaderStatistics::Feature;
 
 // Far above any use, and low enough that a small file cannot ask for a huge network.
 constexpr int kMaxClasses = 256;
@@ -30,6 +32,12 @@ constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::size_t kMaxTextBytes = 4096;
 constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
+// Of measurements of people: far above any person, and low enough that squares and sums cannot
+// overflow.
+constexpr double kMost = 1e6, kLeast = 1e-6;
+constexpr double kSmallestRatio = 0.1, kLargestRatio = 10;  // of followers' bones to leaders'
+constexpr char kLeaderStatistics[] = "leader_statistics";
+constexpr char kPartnerDirection[] = "partner_direction";
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
 constexpr char kTrunkContacts[] = "trunk_contacts";
@@ -63,48 +71,28 @@ std::string ReadName(base::ObjectReader* reader, const std::string& key) {
   return name;
 }
 
-void ReadGenerator(const json& value, base::ObjectReader* root, Manifest* manifest) {
-  base::ObjectReader reader(value, "generator");
-  const bool has_kind = manifest->format_version > 1;
-  SetArchitecture(ReadArchitecture(has_kind, &reader), manifest);
-  root->Update(reader.Finish());
-}
-
-absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
-  base::ObjectReader reader(value, "weights");
+WeightsFile ReadWeightsFile(base::ObjectReader* reader) {
   WeightsFile weights;
-  weights.file = ReadName(&reader, "file");
-  weights.bytes = static_cast<uint64_t>(reader.Int("bytes", 1, kMaxWeightsBytes));
-  weights.sha256 = reader.String("sha256", kSha256HexBytes);
+  weights.file = ReadName(reader, "file");
+  weights.bytes = static_cast<uint64_t>(reader->Int("bytes", 1, kMaxWeightsBytes));
+  weights.sha256 = reader->String("sha256", kSha256HexBytes);
   const bool is_hex = weights.sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
-  if (reader.ok() && (!is_hex || weights.sha256.size() != kSha256HexBytes)) {
-    reader.Fail("sha256",
-                absl::StrCat("expected ", kSha256HexBytes, " digits of lower-case hex, got ",
-                             json(weights.sha256).dump()));
+  if (reader->ok() && (!is_hex || weights.sha256.size() != kSha256HexBytes)) {
+    reader->Fail("sha256",
+                 absl::StrCat("expected ", kSha256HexBytes, " digits of lower-case hex, got ",
+                              json(weights.sha256).dump()));
   }
-  if (absl::Status status = reader.Finish(); !status.ok()) return status;
   return weights;
 }
 
-void ReadTraining(base::ObjectReader* reader, Manifest* manifest) {
-  const json& object = reader->Object("training");
-  if (object.size() > kMaxMapEntries) reader->Fail("training", "too many entries");
-  base::ObjectReader fields(object, "training");
-  for (const auto& field : object.items()) {
-    manifest->training[field.key()] = fields.String(field.key(), kMaxTextBytes);
-  }
-  reader->Update(fields.Finish());
-}
-
-void ReadMetrics(base::ObjectReader* reader, Manifest* manifest) {
-  constexpr double kAny = std::numeric_limits<double>::max();
-  const json& object = reader->Object("metrics");
-  if (object.size() > kMaxMapEntries) reader->Fail("metrics", "too many entries");
-  base::ObjectReader fields(object, "metrics");
-  for (const auto& field : object.items()) {
-    manifest->metrics[field.key()] = fields.Number(field.key(), -kAny, kAny);
-  }
-  reader->Update(fields.Finish());
+// Calls `read(key, fields)` for each field of an object of any names.
+template <typename Read>
+void ReadMap(base::ObjectReader* reader, const std::string& name, const Read& read) {
+  const json& object = reader->Object(name);
+  if (object.size() > kMaxMapEntries) reader->Fail(name, "too many entries");
+  ReadSection(reader, name, [&](base::ObjectReader* fields) {
+    for (const auto& field : object.items()) read(field.key(), fields);
+  });
 }
 
 std::string ReadTime(base::ObjectReader* reader, const std::string& key) {
@@ -117,29 +105,46 @@ std::string ReadTime(base::ObjectReader* reader, const std::string& key) {
   return text;
 }
 
-// Moves a section's value to `out`, or records its error.
-template <typename T>
-void Take(absl::StatusOr<T> section, base::ObjectReader* reader, T* out) {
-  reader->Update(section.status());
-  if (section.ok()) *out = *std::move(section);
+// Records an error unless the list `what` contains the name.
+void ExpectOneOf(const std::vector<std::string>& list, const char* what, const std::string& name,
+                 const std::string& key, base::ObjectReader* reader) {
+  if (std::find(list.begin(), list.end(), name) != list.end()) return;
+  reader->Fail(key, absl::StrCat("expected one of ", what, ", got ", json(name).dump()));
+}
+
+// The elements of an array of exactly `count` numbers, `each` says for what.
+std::vector<double> ReadNumbers(base::ObjectReader* reader, const std::string& key,
+                                std::size_t count, const char* each, double smallest,
+                                double largest) {
+  std::vector<double> numbers;
+  for (const json& value : reader->Array(key, count)) {
+    const std::string element = absl::StrCat(key, "[", numbers.size(), "]");
+    numbers.push_back(value.is_number() ? value.get<double>() : std::nan(""));
+    if (!(numbers.back() >= smallest && numbers.back() <= largest)) {
+      reader->Fail(element, absl::StrCat("expected a number from ", smallest, " to ", largest,
+                                         ", got ", base::Shown(value)));
+    }
+  }
+  if (reader->ok() && numbers.size() != count) {
+    reader->Fail(key,
+                 absl::StrCat("expected ", count, " numbers (", each, "), got ", numbers.size()));
+  }
+  return numbers;
 }
 
 // Older checkpoints have no such field; the only class of their data in which bodies touch is
 // "hug".
 void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* model) {
   const std::vector<std::string>& classes = model->classes;
-  const auto is_class = [&](const std::string& name) {
-    return std::find(classes.begin(), classes.end(), name) != classes.end();
-  };
   if (!reader->Has(kTouchingClasses)) {
-    if (is_class("hug")) model->touching_classes = {"hug"};
+    if (std::find(classes.begin(), classes.end(), "hug") != classes.end()) {
+      model->touching_classes = {"hug"};
+    }
     return;
   }
   model->touching_classes = reader->UniqueStrings(kTouchingClasses, kMaxClasses, kMaxNameBytes);
   for (const std::string& name : model->touching_classes) {
-    if (is_class(name)) continue;
-    reader->Fail(kTouchingClasses,
-                 absl::StrCat("expected one of classes, got ", json(name).dump()));
+    ExpectOneOf(classes, "classes", name, kTouchingClasses, reader);
   }
 }
 
@@ -148,15 +153,10 @@ template <typename Add>
 void ReadClassNumbers(base::ObjectReader* reader, const char* name,
                       const std::vector<std::string>& classes, double most, const Add& add) {
   if (!reader->Has(name)) return;
-  const json& object = reader->Object(name);
-  base::ObjectReader fields(object, name);
-  for (const auto& field : object.items()) {
-    if (std::find(classes.begin(), classes.end(), field.key()) == classes.end()) {
-      reader->Fail(name, absl::StrCat("expected one of classes, got ", json(field.key()).dump()));
-    }
-    add(field.key(), fields.Number(field.key(), 0, most));
-  }
-  reader->Update(fields.Finish());
+  ReadMap(reader, name, [&](const std::string& key, base::ObjectReader* fields) {
+    ExpectOneOf(classes, "classes", key, name, reader);
+    add(key, fields->Number(key, 0, most));
+  });
 }
 
 // What people do in some of the classes. Older checkpoints have no such fields.
@@ -188,7 +188,6 @@ void ReadDefaultSeeds(base::ObjectReader* reader, engine::ModelDescription* mode
 void ReadTrunkContacts(base::ObjectReader* reader, engine::ModelDescription* model) {
   constexpr double kFarthest = 2;  // lengths of the trunk
   if (!reader->Has(kTrunkContacts)) return;
-  const std::vector<std::string>& classes = model->classes;
   for (const json& value : reader->Array(kTrunkContacts, kMaxMapEntries)) {
     const std::string path = absl::StrCat(kTrunkContacts, "[", model->trunk_contacts.size(), "]");
     if (!value.is_object()) {
@@ -197,41 +196,15 @@ void ReadTrunkContacts(base::ObjectReader* reader, engine::ModelDescription* mod
     base::ObjectReader fields(value, path);
     engine::TrunkContact contact;
     contact.interaction_class = fields.String("class", kMaxNameBytes);
-    if (std::find(classes.begin(), classes.end(), contact.interaction_class) == classes.end()) {
-      fields.Fail("class", absl::StrCat("expected one of classes, got ",
-                                        json(contact.interaction_class).dump()));
-    }
+    ExpectOneOf(model->classes, "classes", contact.interaction_class, "class", &fields);
     contact.hand = fields.String("hand", kMaxTextBytes);
-    if (model->skeleton.Find(contact.hand) < 0) {
-      fields.Fail("hand", absl::StrCat("expected one of skeleton.joint_names, got ",
-                                       json(contact.hand).dump()));
-    }
+    ExpectOneOf(model->skeleton.joint_names, "skeleton.joint_names", contact.hand, "hand", &fields);
     const auto along = [&](const char* axis) {
       return static_cast<float>(fields.Number(axis, -kFarthest, kFarthest));
     };
     contact.place = {along("across"), along("up"), along("forward")};
     reader->Update(fields.Finish());
     model->trunk_contacts.push_back(std::move(contact));
-  }
-}
-
-// One for each bone of the skeleton. Older checkpoints have none.
-void ReadBoneRatios(base::ObjectReader* reader, engine::ModelDescription* model) {
-  constexpr double kSmallest = 0.1, kLargest = 10;
-  if (!reader->Has(kBoneRatios)) return;
-  const std::size_t bones = model->skeleton.bones.size();
-  for (const json& value : reader->Array(kBoneRatios, bones)) {
-    const double ratio = value.is_number() ? value.get<double>() : 0;
-    if (ratio < kSmallest || ratio > kLargest) {
-      reader->Fail(absl::StrCat(kBoneRatios, "[", model->bone_ratios.size(), "]"),
-                   absl::StrCat("expected a number from ", kSmallest, " to ", kLargest, ", got ",
-                                base::Shown(value)));
-    }
-    model->bone_ratios.push_back(ratio);
-  }
-  if (reader->ok() && model->bone_ratios.size() != bones) {
-    reader->Fail(kBoneRatios, absl::StrCat("expected ", bones, " numbers (one for each bone), got ",
-                                           model->bone_ratios.size()));
   }
 }
 
@@ -259,13 +232,128 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   ReadHabits(reader, model);
 }
 
-// Older checkpoints have none, and version 1 does not allow them.
-void ReadLeaders(base::ObjectReader* reader, Manifest* manifest) {
-  if (manifest->format_version == 1 || !reader->Has(kLeaderStatistics)) return;
-  const json& leaders = reader->Object(kLeaderStatistics);
-  if (!reader->ok()) return;
-  Take(ReadLeaderStatistics(leaders, manifest->model.skeleton, kLeaderStatistics), reader,
-       &manifest->model.leader_statistics.emplace());
+Feature ReadFeature(base::ObjectReader* fields, const std::vector<engine::LeaderFeature>& known,
+                    std::set<std::string>* seen) {
+  Feature feature;
+  feature.name = fields->String("name", kMaxNameBytes);
+  feature.mean = fields->Number("mean", -kMost, kMost);
+  feature.deviation = fields->Number("deviation", kLeast, kMost);
+  if (!seen->insert(feature.name).second) {
+    fields->Fail("name", absl::StrCat(json(feature.name).dump(), " is repeated"));
+  }
+  std::string names;
+  for (const engine::LeaderFeature& one : known) {
+    if (one.name == feature.name) return feature;
+    absl::StrAppend(&names, names.empty() ? "" : ", ", std::string(one.name));
+  }
+  fields->Fail("name",
+               absl::StrCat("expected one of ", names, ", got ", json(feature.name).dump()));
+  return feature;
+}
+
+// The statistics of the training leaders:
+//   {"features": [{"name", "mean", "deviation"}, ...], "scale": 1.3}
+// Every feature must be one of the skeleton; features may be absent.
+engine::LeaderStatistics ReadLeaderStatistics(const motion::Skeleton& skeleton,
+                                              base::ObjectReader* reader) {
+  engine::LeaderStatistics statistics;
+  const std::vector<engine::LeaderFeature> known = engine::LeaderFeatures(skeleton);
+  std::set<std::string> seen;
+  for (const json& item : reader->Array("features", known.size())) {
+    base::ObjectReader fields(
+        item, reader->PathOf(absl::StrCat("features[", statistics.features.size(), "]")));
+    statistics.features.push_back(ReadFeature(&fields, known, &seen));
+    reader->Update(fields.Finish());
+  }
+  if (reader->ok() && statistics.features.empty()) {
+    reader->Fail("features", "expected at least one feature, got none");
+  }
+  statistics.scale = reader->Number("scale", kLeast, kMost);
+  return statistics;
+}
+
+ordered_json LeaderStatisticsToJson(const engine::LeaderStatistics& statistics) {
+  ordered_json features = ordered_json::array();
+  for (const Feature& feature : statistics.features) {
+    features.push_back(
+        {{"name", feature.name}, {"mean", feature.mean}, {"deviation", feature.deviation}});
+  }
+  return {{"features", features}, {"scale", statistics.scale}};
+}
+
+constexpr char kRegressionNumbers[] = "two for each joint, three more";
+
+void ReadCoefficients(base::ObjectReader* reader, std::size_t count, std::vector<double>* cosine,
+                      std::vector<double>* sine) {
+  *cosine = ReadNumbers(reader, "cosine", count, kRegressionNumbers, -kMost, kMost);
+  *sine = ReadNumbers(reader, "sine", count, kRegressionNumbers, -kMost, kMost);
+}
+
+void ReadAngleRegression(base::ObjectReader* reader, std::size_t count,
+                         engine::AngleRegression* regression) {
+  regression->mean = ReadNumbers(reader, "mean", count, kRegressionNumbers, -kMost, kMost);
+  regression->deviation =
+      ReadNumbers(reader, "deviation", count, kRegressionNumbers, kLeast, kMost);
+  ReadCoefficients(reader, count, &regression->cosine, &regression->sine);
+}
+
+engine::DirectionCorrection ReadCorrection(base::ObjectReader* reader, std::size_t count,
+                                           std::size_t classes) {
+  engine::DirectionCorrection correction;
+  ReadAngleRegression(reader, count, &correction);
+  const json& list = reader->Array("classes", classes);
+  for (const json& value : list) {
+    if (!value.is_object()) {
+      reader->Fail("classes", absl::StrCat("expected objects, got ", base::Shown(value)));
+      break;
+    }
+    base::ObjectReader item(
+        value, reader->PathOf(absl::StrCat("classes[", correction.classes.size(), "]")));
+    engine::ClassCoefficients& added = correction.classes.emplace_back();
+    ReadCoefficients(&item, count, &added.cosine, &added.sine);
+    reader->Update(item.Finish());
+  }
+  if (reader->ok() && list.size() != classes) {
+    reader->Fail("classes", absl::StrCat("expected one object for each of the ", classes,
+                                         " classes, got ", list.size()));
+  }
+  return correction;
+}
+
+ordered_json RegressionToJson(const engine::AngleRegression& regression) {
+  return {{"mean", regression.mean},
+          {"deviation", regression.deviation},
+          {"cosine", regression.cosine},
+          {"sine", regression.sine}};
+}
+
+// The regression of the partner's direction on the leader's motion; the field may be absent.
+void ReadPartnerDirection(base::ObjectReader* manifest, engine::ModelDescription* model) {
+  if (!manifest->ok() || !manifest->Has(kPartnerDirection)) return;
+  ReadSection(manifest, kPartnerDirection, [&](base::ObjectReader* reader) {
+    if (!model->skeleton.hips) {
+      return manifest->Fail(kPartnerDirection,
+                            "expected none for a skeleton without hips, got one");
+    }
+    const auto count = static_cast<std::size_t>(engine::DirectionFeatureCount(model->skeleton));
+    engine::DirectionRegression& regression = model->partner_direction.emplace();
+    ReadAngleRegression(reader, count, &regression);
+    if (!reader->Has("correction")) return;
+    ReadSection(reader, "correction", [&](base::ObjectReader* correction) {
+      regression.correction = ReadCorrection(correction, count, model->classes.size());
+    });
+  });
+}
+
+ordered_json DirectionRegressionToJson(const engine::DirectionRegression& regression) {
+  ordered_json object = RegressionToJson(regression);
+  if (!regression.correction) return object;
+  object["correction"] = RegressionToJson(*regression.correction);
+  ordered_json& classes = object["correction"]["classes"] = ordered_json::array();
+  for (const engine::ClassCoefficients& added : regression.correction->classes) {
+    classes.push_back({{"cosine", added.cosine}, {"sine", added.sine}});
+  }
+  return object;
 }
 
 absl::StatusOr<Manifest> ReadManifest(const json& root) {
@@ -277,25 +365,44 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   ReadModel(&reader, &manifest.model);
   motion::SkeletonDocument skeleton;
   const json& skeleton_object = reader.Object("skeleton");
-  if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
+  if (reader.ok()) {
+    absl::StatusOr<motion::SkeletonDocument> read =
+        motion::ReadSkeleton(skeleton_object, "skeleton");
+    reader.Update(read.status());
+    if (read.ok()) skeleton = *std::move(read);
+  }
   manifest.model.skeleton = std::move(skeleton.skeleton);
-  ReadBoneRatios(&reader, &manifest.model);
-  if (reader.ok()) ReadTrunkContacts(&reader, &manifest.model);
-  ReadDefaultSeeds(&reader, &manifest.model);
-  ReadLeaders(&reader, &manifest);
-  manifest.model.partner_direction = ReadDirectionRegression(
-      manifest.model.skeleton, static_cast<int>(manifest.model.classes.size()), &reader);
-  const json& generator = reader.Object("generator");
-  if (reader.ok()) ReadGenerator(generator, &reader, &manifest);
+  // Older checkpoints lack some of these, and version 1 does not allow statistics.
+  engine::ModelDescription& model = manifest.model;
+  if (reader.Has(kBoneRatios)) {
+    model.bone_ratios = ReadNumbers(&reader, kBoneRatios, model.skeleton.bones.size(),
+                                    "one for each bone", kSmallestRatio, kLargestRatio);
+  }
+  if (reader.ok()) ReadTrunkContacts(&reader, &model);
+  ReadDefaultSeeds(&reader, &model);
+  if (manifest.format_version > 1 && reader.Has(kLeaderStatistics)) {
+    ReadSection(&reader, kLeaderStatistics, [&](base::ObjectReader* fields) {
+      model.leader_statistics = ReadLeaderStatistics(model.skeleton, fields);
+    });
+  }
+  ReadPartnerDirection(&reader, &model);
+  ReadSection(&reader, "generator", [&](base::ObjectReader* fields) {
+    SetArchitecture(ReadArchitecture(manifest.format_version > 1, fields), &manifest);
+  });
   manifest.parts = std::move(skeleton.parts);
   manifest.standardisation = ReadNamed(&reader, "standardisation", kStandardisationNames);
-  const json& weights = reader.Object("weights");
-  if (reader.ok()) Take(ReadWeightsFile(weights), &reader, &manifest.weights);
+  ReadSection(&reader, "weights",
+              [&](base::ObjectReader* fields) { manifest.weights = ReadWeightsFile(fields); });
   manifest.model.weights_sha256 = manifest.weights.sha256;
   manifest.git_revision = reader.String("git_revision", kMaxTextBytes);
   manifest.created = ReadTime(&reader, "created");
-  ReadTraining(&reader, &manifest);
-  ReadMetrics(&reader, &manifest);
+  ReadMap(&reader, "training", [&](const std::string& key, base::ObjectReader* fields) {
+    manifest.training[key] = fields->String(key, kMaxTextBytes);
+  });
+  ReadMap(&reader, "metrics", [&](const std::string& key, base::ObjectReader* fields) {
+    constexpr double kAny = std::numeric_limits<double>::max();
+    manifest.metrics[key] = fields->Number(key, -kAny, kAny);
+  });
   if (absl::Status status = reader.Finish(); !status.ok()) return status;
   return manifest;
 }
