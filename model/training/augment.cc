@@ -41,22 +41,14 @@ void TurnLeader(int root, double radians, motion::Clip* leader) {
 // Changes the build slightly, so that the network cannot recognise a clip by its leader's.
 void AddBodyNoise(double deviation, base::Random* random, motion::Clip* clip) {
   std::vector<motion::Vec3> offsets(static_cast<size_t>(clip->joint_count()));
-  for (motion::Vec3& offset : offsets) {
-    offset = {static_cast<float>(random->Normal(deviation)),
-              static_cast<float>(random->Normal(deviation)),
-              static_cast<float>(random->Normal(deviation))};
-  }
+  for (motion::Vec3& offset : offsets) offset = Normal3(deviation, random);
   for (int t = 0; t < clip->frame_count(); ++t) {
     for (size_t j = 0; j < offsets.size(); ++j) clip->poses[t][j] += offsets[j];
   }
 }
 
 void AddNoise(double deviation, base::Random* random, motion::Clip* clip) {
-  for (motion::Vec3& point : clip->poses.all()) {
-    point += motion::Vec3{static_cast<float>(random->Normal(deviation)),
-                          static_cast<float>(random->Normal(deviation)),
-                          static_cast<float>(random->Normal(deviation))};
-  }
+  for (motion::Vec3& point : clip->poses.all()) point += Normal3(deviation, random);
 }
 
 void Keep(int first, int frames, motion::Clip* clip) {
@@ -109,6 +101,12 @@ void Warp(double speed, int longest, dataset::Sequence* sequence) {
 }
 
 }  // namespace
+
+motion::Vec3 Normal3(double deviation, base::Random* random) {
+  return {static_cast<float>(random->Normal(deviation)),
+          static_cast<float>(random->Normal(deviation)),
+          static_cast<float>(random->Normal(deviation))};
+}
 
 std::vector<int> MirroredJoints(const motion::Skeleton& skeleton) {
   return retargeting::CounterpartJoints(skeleton.joint_names);

@@ -3,8 +3,12 @@
 
 #include <vector>
 
+#include "absl/status/status.h"
 #include "model/base/random.h"
 #include "model/dataset/dataset.h"
+#include "model/engine/model_description.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
 #include "model/training/options.h"
 
 namespace duet::training {
@@ -21,6 +25,9 @@ void Mirror(const std::vector<int>& mirrored_joints, dataset::Sequence* sequence
 // Exchanges leader and follower.
 void SwapRoles(dataset::Sequence* sequence);
 
+// A random vector whose components have this standard deviation.
+motion::Vec3 Normal3(double deviation, base::Random* random);
+
 // Adds the noise of a captured leader: `noise` and `body_noise` of the options.
 void DisturbLeader(const TrainingOptions::Augmentation& options, base::Random* random,
                    motion::Clip* leader);
@@ -28,6 +35,75 @@ void DisturbLeader(const TrainingOptions::Augmentation& options, base::Random* r
 // A random variant of a sequence. Requires options that CheckAgainst accepts.
 dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
                           const TrainingOptions::Augmentation& options, base::Random* random);
+
+// Checks that the skeleton has the joints that AddStillness needs, if the options use it.
+// INVALID_ARGUMENT otherwise.
+absl::Status CheckStillness(const TrainingOptions& options, const dataset::Dataset& dataset);
+
+// A clip with what is around a captured reaction.
+struct StillClip {
+  dataset::Sequence sequence;
+  // The follower does not begin at its place: the clip needs a start pose.
+  bool amid = false;
+  // Nothing is asked of the follower, which therefore rests: the clip needs weights of 0.
+  bool unlabelled = false;
+};
+
+// Adds to a captured clip what its cut left out. Captures begin and end with the action, so they
+// never show that a follower rests while nothing happens, and comes back to rest afterwards. Draws
+// one of:
+//
+// - a reaction with pauses before and after it. Before, both people hold their first poses. After,
+//   the leader holds still, or slows down, or goes to rest; the follower slows down, and then goes
+//   to rest;
+// - the end of a reaction and a longer rest;
+// - a leader who does not move. The follower rests, or goes to rest from a pose of the reaction;
+// - the captured leader and a follower that rests, unlabelled: without a class, nothing is asked.
+//
+// A person at rest has the calmest pose of the clip (hands low, feet together) at the place of its
+// first frame, relative to the leader, and shifts its weight. It gets there in one step of each
+// foot; feet stand otherwise.
+//
+// The clip is at most `most_frames` long; a reaction that leaves no room gets no pauses. Requires
+// the joints of CheckStillness, and a clip without a time line of labels. Units: frame_rate_hz of
+// the clip.
+StillClip AddStillness(const motion::Skeleton& skeleton, const FlowTraining::Stillness& options,
+                       double frame_rate_hz, int most_frames, base::Random* random,
+                       dataset::Sequence sequence);
+
+// Checks the leaders without followers of a data set: there are some exactly if the options use
+// them, the skeleton has hips, and one of the motions is at least as long as the longest sequence.
+// INVALID_ARGUMENT otherwise.
+absl::Status CheckLoneLeaders(const TrainingOptions& options, const dataset::Dataset& dataset);
+
+// Gives a captured follower another leader: a random part of one of dataset.lone_leaders. The
+// follower moves as captured, but its place and direction are those that it had relative to its
+// own leader. If the new leader turns, the follower walks around it, at most as fast as people do,
+// so that it is sometimes beside or behind a leader who turns quickly. Beside one who rests, it
+// goes back to its first pose. Then it passes the stages of a server, so that
+// feet step where the follower is carried along and bodies keep apart. A leader without a follower
+// thus has the distribution of captured followers of the class as its target.
+//
+// The new leader is mirrored in half of the cases if the options mirror any class, and gets the
+// noise of a captured one. A sequence that is longer than every such leader does not change.
+// Requires a skeleton with hips and at least one such leader. `model` describes the model in
+// training.
+void ReplaceLeader(const engine::ModelDescription& model, const dataset::Dataset& dataset,
+                   const TrainingOptions::Augmentation& options, base::Random* random,
+                   dataset::Sequence* sequence);
+
+// How much a leader acts in every frame, by the speed of its joints: from 0, it rests, to 1.
+std::vector<double> ActingShares(const motion::Poses& leader, double frame_rate_hz);
+
+// The frames of a captured reaction that a follower goes through beside another leader, in frames
+// of the reaction, for `frames` frames of that leader from `first` on.
+//
+// While the leader acts, the reaction advances at its own pace, and goes back after its end. While
+// the leader rests, the follower goes back to its first pose, and sways there. Captures end with
+// the reaction; without the way back, each window of a long clip would begin where the last
+// reaction ended, and turn further away. Half of the followers begin in the midst of the reaction.
+std::vector<double> ReactionFrames(const std::vector<double>& acting_shares, int first, int frames,
+                                   double frame_rate_hz, base::Random* random);
 
 }  // namespace duet::training
 

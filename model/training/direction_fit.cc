@@ -1,5 +1,3 @@
-#include "model/training/direction_fit.h"
-
 #include <torch/torch.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "model/motion/standardise.h"
 #include "model/training/augment.h"
+#include "model/training/finishing.h"
 
 namespace duet::training {
 namespace {

@@ -22,7 +22,6 @@
 #include "model/network/flow_generator.h"
 #include "model/network/flow_sampler.h"
 #include "model/network/parameters.h"
-#include "model/training/frame_labels.h"
 #include "model/training/optimiser.h"
 #include "model/training/sampler.h"
 

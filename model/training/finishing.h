@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/dataset/dataset.h"
+#include "model/engine/direction_estimate.h"
 #include "model/engine/synthesizer.h"
 #include "model/training/options.h"
 
@@ -59,6 +61,15 @@ absl::StatusOr<TrainedCritic> TrainCritic(const FlowTraining& flow, uint64_t see
 absl::StatusOr<std::vector<uint64_t>> ChooseDefaultSeeds(const engine::Synthesizer& synthesizer,
                                                          const dataset::Dataset& dataset,
                                                          const std::vector<int>& train);
+
+// Fits a regression of the partner's direction on the leader's motion. The training set is each
+// leader as captured and mirrored; in symmetric classes the follower is another leader. The first
+// estimate learns every leader also from behind, because a capture may confuse left and right hips.
+// Returns nothing if no leader's hips have a direction.
+//
+// Source: ridge regressions in closed form; the penalties were chosen on SBU with held-out people.
+std::optional<engine::DirectionRegression> FitPartnerDirection(const dataset::Dataset& dataset,
+                                                               const std::vector<int>& train);
 
 }  // namespace duet::training
 

@@ -1,5 +1,3 @@
-#include "model/training/flow_augment.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +6,7 @@
 #include "model/base/angle.h"
 #include "model/engine/live_synthesis.h"
 #include "model/motion/limb_lengths.h"
+#include "model/training/flow_batches.h"
 
 namespace duet::training {
 namespace {
@@ -18,12 +17,6 @@ using motion::Vec3;
 
 Vec3 Horizontal(double angle) {
   return {static_cast<float>(std::cos(angle)), 0, static_cast<float>(std::sin(angle))};
-}
-
-Vec3 Normal3(double deviation, base::Random* random) {
-  return {static_cast<float>(random->Normal(deviation)),
-          static_cast<float>(random->Normal(deviation)),
-          static_cast<float>(random->Normal(deviation))};
 }
 
 // True for the joints of the legs below the hips.

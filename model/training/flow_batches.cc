@@ -5,10 +5,8 @@
 #include "model/engine/windows.h"
 #include "model/motion/filter.h"
 #include "model/network/batch.h"
-#include "model/training/flow_augment.h"
-#include "model/training/frame_labels.h"
-#include "model/training/lone_leader.h"
-#include "model/training/stillness.h"
+#include "model/training/augment.h"
+#include "model/training/sampler.h"
 
 namespace duet::training {
 namespace {
@@ -29,9 +27,7 @@ void Disturb(double deviation, base::Random* random, engine::NetworkInput* input
   if (!input->start) return;
   std::vector<motion::Vec3>& pose = input->start->pose;
   for (std::size_t j = 0; j < pose.size(); ++j) {
-    const motion::Vec3 by = {static_cast<float>(random->Normal(deviation)),
-                             static_cast<float>(random->Normal(deviation)),
-                             static_cast<float>(random->Normal(deviation))};
+    const motion::Vec3 by = Normal3(deviation, random);
     pose[j] += by;
     for (int t = 0; t < input->settled.frame_count(); ++t) input->settled[t][j] += by;
   }

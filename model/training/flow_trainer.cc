@@ -9,7 +9,6 @@
 #include "model/network/flow_sampler.h"
 #include "model/network/losses.h"
 #include "model/network/parameters.h"
-#include "model/training/flow_augment.h"
 #include "model/training/flow_batches.h"
 
 namespace duet::training {

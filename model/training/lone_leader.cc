@@ -1,4 +1,3 @@
-#include "model/training/lone_leader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,6 @@
 #include "model/motion/resample.h"
 #include "model/motion/standardise.h"
 #include "model/training/augment.h"
-#include "model/training/frame_labels.h"
 #include "model/training/sampler.h"
 
 namespace duet::training {

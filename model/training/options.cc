@@ -13,15 +13,19 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/status_macros.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/checkpoint/architecture_json.h"
 #include "model/retargeting/anatomy.h"
+#include "model/training/named_configs.inc"
 
 namespace duet::training {
 namespace {
 
 using nlohmann::json;
+
+using Replacements = std::vector<std::pair<std::string, std::string>>;
 
 constexpr std::size_t kMaxWords = 256, kMaxWordBytes = 64;
 constexpr int64_t kMaxUnits = 4096;
@@ -83,16 +87,15 @@ class SettingFields {
   // Declares the fields of the object `name` with `declare()`.
   template <typename Declare>
   void Section(const std::string& name, Declare declare) {
-    const std::string outer = path_;
-    path_ += name + ".";
+    const std::string outer = std::exchange(path_, path_ + name + ".");
     if (reader_ == nullptr) {
       declare();
-    } else if (const nlohmann::json& object = reader_->Object(name); reader_->ok()) {
-      base::ObjectReader section(object, reader_->PathOf(name));
-      base::ObjectReader* const reader = std::exchange(reader_, &section);
-      declare();
-      reader_ = reader;
-      reader_->Update(section.Finish());
+    } else {
+      checkpoint::ReadSection(reader_, name, [&](base::ObjectReader* section) {
+        base::ObjectReader* const reader = std::exchange(reader_, section);
+        declare();
+        reader_ = reader;
+      });
     }
     path_ = outer;
   }
@@ -265,12 +268,12 @@ void Declare(SettingFields* fields, TrainingOptions* options) {
 }
 
 // The settings that train each architecture.
-Method MethodFor(const checkpoint::PaperArchitecture& architecture) {
+PaperTraining MethodFor(const checkpoint::PaperArchitecture& architecture) {
   PaperTraining method;
   method.architecture = architecture;
   return method;
 }
-Method MethodFor(const checkpoint::FlowArchitecture& architecture) {
+FlowTraining MethodFor(const checkpoint::FlowArchitecture& architecture) {
   FlowTraining method;
   method.architecture = architecture;
   return method;
@@ -278,14 +281,12 @@ Method MethodFor(const checkpoint::FlowArchitecture& architecture) {
 
 Method ReadMethod(base::ObjectReader* root, SettingFields* fields) {
   checkpoint::Architecture architecture;
-  const json& object = root->Object("generator");
-  if (root->ok()) {
-    base::ObjectReader generator(object, "generator");
+  checkpoint::ReadSection(root, "generator", [&architecture](base::ObjectReader* generator) {
     architecture =
-        checkpoint::ReadArchitecture(generator.Has(checkpoint::kArchitectureKind), &generator);
-    root->Update(generator.Finish());
-  }
-  Method method = std::visit([](const auto& one) { return MethodFor(one); }, architecture);
+        checkpoint::ReadArchitecture(generator->Has(checkpoint::kArchitectureKind), generator);
+  });
+  Method method =
+      std::visit([](const auto& one) -> Method { return MethodFor(one); }, architecture);
   if (root->ok()) std::visit([fields](auto& one) { Declare(fields, &one); }, method);
   return method;
 }
@@ -323,40 +324,21 @@ absl::Status Replace(const std::string& path, const std::string& text, json* roo
   return absl::OkStatus();
 }
 
-}  // namespace
-
-absl::StatusOr<TrainingOptions> ParseTrainingOptions(std::string_view text) {
-  return ParseTrainingOptions(text, {});
-}
-
-absl::StatusOr<TrainingOptions> ParseTrainingOptions(
-    std::string_view text, const std::vector<std::pair<std::string, std::string>>& replacements) {
-  absl::StatusOr<json> root = base::ParseStrictJson(text, kMaxDepth);
-  if (!root.ok()) return root.status();
-  for (const auto& [path, value] : replacements) {
-    absl::Status status = Replace(path, value, &*root);
-    if (!status.ok()) return status;
+// Parses a base and the changes to it.
+absl::StatusOr<TrainingOptions> ParseDerived(const json& value, const Replacements& replacements) {
+  base::ObjectReader reader(value, "");
+  const std::string name = reader.String("base", kMaxWordBytes);
+  const NamedConfig* const base = FindConfig(name);
+  if (reader.ok() && base == nullptr) {
+    reader.Fail("base", absl::StrCat("expected a named configuration, got ", base::Quoted(name)));
   }
-  return ReadOptions(*root);
+  const json& set = reader.Object("set");
+  DUET_RETURN_IF_ERROR(reader.Finish());
+  Replacements all;
+  for (const auto& [path, setting] : set.items()) all.emplace_back(path, setting.dump());
+  all.insert(all.end(), replacements.begin(), replacements.end());
+  return ParseConfig(base->json, all);
 }
-
-checkpoint::Architecture ArchitectureOf(const TrainingOptions& options) {
-  return std::visit([](const auto& one) -> checkpoint::Architecture { return one.architecture; },
-                    options.method);
-}
-
-std::map<std::string, std::string> Describe(const TrainingOptions& options) {
-  TrainingOptions declared = options;
-  Description description;
-  SettingFields fields(&description);
-  Declare(&fields, &declared);
-  std::visit([&fields](auto& one) { Declare(&fields, &one); }, declared.method);
-  description["standardisation"] =
-      std::string(NameOf(checkpoint::kStandardisationNames, options.standardisation));
-  return description;
-}
-
-namespace {
 
 // A mirror image is wrong if left and right joints are not exchanged.
 absl::Status CheckMirror(const TrainingOptions::Augmentation& augmentation,
@@ -374,6 +356,39 @@ absl::Status CheckMirror(const TrainingOptions::Augmentation& augmentation,
 }
 
 }  // namespace
+
+const NamedConfig* FindConfig(std::string_view name) {
+  for (const NamedConfig& config : NamedConfigs()) {
+    if (config.name == name) return &config;
+  }
+  return nullptr;
+}
+
+absl::StatusOr<TrainingOptions> ParseConfig(std::string_view text,
+                                            const Replacements& replacements) {
+  DUET_TRY(json root, base::ParseStrictJson(text, kMaxDepth));
+  if (root.contains("base")) return ParseDerived(root, replacements);
+  for (const auto& [path, value] : replacements) {
+    DUET_RETURN_IF_ERROR(Replace(path, value, &root));
+  }
+  return ReadOptions(root);
+}
+
+checkpoint::Architecture ArchitectureOf(const TrainingOptions& options) {
+  return std::visit([](const auto& one) -> checkpoint::Architecture { return one.architecture; },
+                    options.method);
+}
+
+std::map<std::string, std::string> Describe(const TrainingOptions& options) {
+  TrainingOptions declared = options;
+  Description description;
+  SettingFields fields(&description);
+  Declare(&fields, &declared);
+  std::visit([&fields](auto& one) { Declare(&fields, &one); }, declared.method);
+  description["standardisation"] =
+      std::string(NameOf(checkpoint::kStandardisationNames, options.standardisation));
+  return description;
+}
 
 absl::Status CheckAgainst(const TrainingOptions& options, const dataset::Dataset& dataset) {
   if (absl::Status status = CheckMirror(options.augmentation, dataset.skeleton); !status.ok()) {

@@ -93,7 +93,7 @@ struct FlowTraining {
     int64_t frames = 20;  // from the last known frame until the captured motion is reached
   } drift;
 
-  // A fraction of the clips gets a leader who was not captured with a partner (lone_leader.h).
+  // A fraction of the clips gets a leader who was not captured with a partner (augment.h).
   struct Leaders {
     double share = 0;  // of the clips
   } leaders;
@@ -110,7 +110,7 @@ struct FlowTraining {
     bool used() const { return pauses + ends + motionless + unlabelled > 0; }
   } stillness;
 
-  // A fraction of the clips is trained as a live session answers them (flow_augment.h): the
+  // A fraction of the clips is trained as a live session answers them (flow_batches.h): the
   // leader's future is unknown.
   struct Live {
     double share = 0;             // of the clips
@@ -120,7 +120,7 @@ struct FlowTraining {
     double future_seconds = 1;    // of the window after the present
   } live;
 
-  // Clips with several known frames may continue the network's own motion (flow_augment.h). Applies
+  // Clips with several known frames may continue the network's own motion (flow_batches.h). Applies
   // to the last part of a run, described below.
   struct Own {
     double share = 0;            // of the clips with several known frames
@@ -205,14 +205,24 @@ inline const FlowTraining* FlowIn(const TrainingOptions& options) {
   return std::get_if<FlowTraining>(&options.method);
 }
 
-// Parses a configuration. Every field is required; an unknown field or a value out of range is
-// INVALID_ARGUMENT naming the field, its value and the range.
-absl::StatusOr<TrainingOptions> ParseTrainingOptions(std::string_view json);
+// A configuration of model/training/configs, linked into the program.
+struct NamedConfig {
+  std::string_view name;
+  std::string_view json;
+};
 
-// The same after replacing fields by dotted path: {"losses.bone", "0.01"}. Values are JSON, or
-// plain words.
-absl::StatusOr<TrainingOptions> ParseTrainingOptions(
-    std::string_view json, const std::vector<std::pair<std::string, std::string>>& replacements);
+const std::vector<NamedConfig>& NamedConfigs();
+
+// The configuration of this name, or null.
+const NamedConfig* FindConfig(std::string_view name);
+
+// Parses a configuration, after replacing fields by dotted path: {"losses.bone", "0.01"}; values
+// are JSON, or plain words. It has all settings, or the differences from a named configuration:
+// {"base": "default", "set": {"losses.bone": 0}}. An unknown or missing field or a value out of
+// range is INVALID_ARGUMENT naming the field, its value and the range.
+absl::StatusOr<TrainingOptions> ParseConfig(
+    std::string_view json,
+    const std::vector<std::pair<std::string, std::string>>& replacements = {});
 
 checkpoint::Architecture ArchitectureOf(const TrainingOptions& options);
 

@@ -99,14 +99,10 @@ double PaperTrainer::ValidationError(const Example& example) {
       .item<double>();
 }
 
-network::Generator PaperTrainer::Best() {
+std::vector<checkpoint::Tensor> PaperTrainer::BestTensors() {
   network::Generator best(manifest_);
   CopyBest(best.get());
-  return best;
-}
-
-std::vector<checkpoint::Tensor> PaperTrainer::BestTensors() {
-  return network::StoreParameters(manifest_, Best());
+  return network::StoreParameters(manifest_, best);
 }
 
 std::vector<std::pair<std::string, torch::Tensor>> PaperTrainer::MoreTensors() {

@@ -72,8 +72,6 @@ class PaperTrainer : public EpochTrainer {
                const dataset::Dataset& dataset, std::vector<int> train,
                std::vector<int> validation);
 
-  // The generator whose tensors BestTensors returns.
-  network::Generator Best();
   std::vector<checkpoint::Tensor> BestTensors() override;
 
   int64_t steps_per_epoch() const override { return steps_per_epoch_; }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,14 +21,10 @@
 #include "model/dataset/time_line.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/exceptions.h"
-#include "model/training/direction_fit.h"
+#include "model/training/augment.h"
 #include "model/training/finishing.h"
 #include "model/training/flow_trainer.h"
-#include "model/training/lone_leader.h"
 #include "model/training/paper_trainer.h"
-#include "model/training/revision.h"
-#include "model/training/run_log.h"
-#include "model/training/stillness.h"
 
 namespace duet::training {
 namespace {
@@ -211,35 +209,10 @@ absl::Status Write(const RunPlan& plan, checkpoint::Checkpoint checkpoint) {
   return checkpoint::WriteCheckpoint(CheckpointFolder(plan), std::move(checkpoint));
 }
 
-// Writes the checkpoint `from` with a new critic, and with the contacts that the data shows, under
-// the name of the plan.
-absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& dataset,
-                             const std::vector<int>& train,
-                             std::vector<engine::TrunkContact> trunk_contacts,
-                             checkpoint::Checkpoint from, std::ostream* progress) {
-  const FlowTraining* flow = FlowIn(plan.options);
-  if (plan.from.empty() || !from.manifest.model.samples || flow == nullptr ||
-      flow->critic.steps == 0) {
-    return absl::InvalidArgumentError(
-        "--critic-only: expected --from with a sampling generator, and critic.steps above 0");
-  }
-  checkpoint::Manifest& manifest = from.manifest;
-  manifest.training["critic.of"] =
-      absl::StrCat(manifest.model.name, "@", manifest.model.version, " ", manifest.weights.sha256);
-  manifest.training["critic.steps"] = absl::StrCat(flow->critic.steps);
-  manifest.training["critic.answers"] = absl::StrCat(flow->critic.answers);
-  manifest.model.name = plan.model_name;
-  manifest.model.version = plan.model_version;
-  if (!plan.description.empty()) manifest.model.description = plan.description;
-  manifest.model.trunk_contacts = std::move(trunk_contacts);
-  DUET_RETURN_IF_ERROR(AddCritic(plan, dataset, train, progress, &from));
-  return Write(plan, std::move(from));
-}
-
 absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
                     const std::vector<int>& train, checkpoint::Manifest manifest,
                     const EpochReport& last, EpochTrainer* trainer, std::ostream* progress) {
-  manifest.git_revision = kGitRevision;
+  manifest.git_revision = DUET_GIT_REVISION;  // that this program was configured from
   // A run that was killed after its last epoch has no report of it any more.
   if (last.epoch > 0) manifest.metrics["training.reconstruction"] = last.reconstruction;
   if (std::isfinite(trainer->best_afd())) {
@@ -249,6 +222,59 @@ absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
   checkpoint::Checkpoint checkpoint{std::move(manifest), trainer->BestTensors(), {}};
   DUET_RETURN_IF_ERROR(AddCritic(plan, dataset, train, progress, &checkpoint));
   return Write(plan, std::move(checkpoint));
+}
+
+constexpr char kColumns[] =
+    "epoch,generator,reconstruction,bone,continuity,adversarial,discriminator,validation_afd,"
+    "validation_afd_pose,seconds,whole_answers";
+constexpr int kBarWidth = 24;
+
+std::string Optional(double value) {
+  return std::isnan(value) ? "" : absl::StrFormat("%.6f", value);
+}
+
+std::string Row(const EpochReport& r) {
+  return absl::StrFormat("%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%s,%.3f,%d", r.epoch, r.generator,
+                         r.reconstruction, r.bone, r.continuity, r.adversarial, r.discriminator,
+                         Optional(r.validation_afd), Optional(r.validation_afd_pose), r.seconds,
+                         r.whole_answers ? 1 : 0);
+}
+
+absl::Status WriteText(const std::filesystem::path& file, const std::string& text,
+                       std::ios::openmode mode) {
+  std::ofstream out(file, mode);
+  out << text;
+  out.flush();
+  if (out) return absl::OkStatus();
+  return absl::InternalError(absl::StrCat(file.string(), ": cannot be written"));
+}
+
+// Prepares the log for epochs after `epoch`: a file with the names of the columns, without the rows
+// of later epochs, which a run wrote before it was killed without saving its state.
+absl::Status ResumeLog(const fs::path& file, int64_t epoch) {
+  std::string kept = absl::StrCat(kColumns, "\n");
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);  // the column names
+  while (std::getline(in, line)) {
+    const int64_t row_epoch = std::strtoll(line.c_str(), nullptr, 10);
+    if (row_epoch >= 1 && row_epoch <= epoch) absl::StrAppend(&kept, line, "\n");
+  }
+  return WriteText(file, kept, std::ios::trunc);
+}
+
+// "[#####.....] epoch 12/60  loss 3.214  val 0.61  0:14 left". One line, no line end.
+std::string ProgressLine(const std::string& title, const EpochReport& report) {
+  const int filled =
+      static_cast<int>(kBarWidth * report.epoch / std::max<int64_t>(report.epochs, 1));
+  const int64_t left =
+      std::llround(static_cast<double>(report.epochs - report.epoch) * report.seconds);
+  const std::string validation =
+      std::isnan(report.validation_afd) ? "" : absl::StrFormat("  val %.4f", report.validation_afd);
+  return absl::StrFormat("%s [%s%s] epoch %d/%d  loss %.4f%s  %d:%02d left", title,
+                         std::string(static_cast<size_t>(filled), '#'),
+                         std::string(static_cast<size_t>(kBarWidth - filled), '.'), report.epoch,
+                         report.epochs, report.generator, validation, left / 60, left % 60);
 }
 
 void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
@@ -300,10 +326,6 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   }
   Measure(whole, takes, dataset, train, plan.options, &manifest.model);
   DUET_TRY(checkpoint::Checkpoint from, ReadFrom(plan, &manifest));
-  if (plan.critic_only) {
-    return TrainCriticOnly(plan, dataset, train, manifest.model.trunk_contacts, std::move(from),
-                           progress);
-  }
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan.options, manifest, dataset, train, validation);
   DUET_RETURN_IF_ERROR(trainer->UseDevice(plan.device));
@@ -311,8 +333,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   absl::Status status = trainer->LoadState(state);
   if (absl::IsNotFound(status)) status = StartFrom(plan, from, trainer.get());
   DUET_RETURN_IF_ERROR(status);
-  RunLog log(plan.folder / "log.csv");
-  DUET_RETURN_IF_ERROR(log.ResumeAt(trainer->epoch()));
+  const fs::path log = plan.folder / "log.csv";
+  DUET_RETURN_IF_ERROR(ResumeLog(log, trainer->epoch()));
   *progress << plan.title << ": " << train.size() << " sequences, "
             << plan.options.epochs * trainer->steps_per_epoch() << " steps\n";
   EpochReport report;
@@ -326,7 +348,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
     }
     // The log before the state: resuming drops a row without its state, but cannot restore a lost
     // row.
-    DUET_RETURN_IF_ERROR(log.Append(report));
+    DUET_RETURN_IF_ERROR(WriteText(log, Row(report) + "\n", std::ios::app));
     DUET_RETURN_IF_ERROR(trainer->SaveState(state));
     if (report.whole_answers && !scored && !first) {
       *progress << (terminal ? "\n" : "") << plan.title << ": from epoch " << report.epoch

@@ -27,8 +27,6 @@ struct RunPlan {
   // Folder of a checkpoint of the same architecture, joints and classes whose weights the run
   // begins with; empty: random weights.
   std::filesystem::path from;
-  // Only trains a critic for the checkpoint `from`, which keeps its generator.
-  bool critic_only = false;
   // LibTorch's device: "cpu" or "cuda". Only sampling generators train on "cuda".
   std::string device = "cpu";
 };

@@ -85,6 +85,13 @@ torch::Tensor ClassMeanPoses(const checkpoint::Manifest& manifest, const dataset
 void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Sequence>& pool,
                  base::Random* random, Example* example);
 
+// The label weights of every frame of a sequence, in random variants from which a generator with
+// frame_labels learns the meaning of a weight: 1 for a class of the frame, 0 where nothing is said
+// of the class, -1 where it is absent and avoided. A sequence without a time line has its class in
+// every frame. Returns [frames, classes].
+std::vector<float> DrawFrameLabels(const dataset::Sequence& sequence, int classes,
+                                   const FlowTraining::FrameLabels& options, base::Random* random);
+
 }  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_SAMPLER_H_

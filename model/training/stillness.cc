@@ -1,5 +1,3 @@
-#include "model/training/stillness.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +10,7 @@
 #include "model/body/limbs.h"
 #include "model/motion/limb_lengths.h"
 #include "model/motion/resample.h"
+#include "model/training/augment.h"
 
 namespace duet::training {
 namespace {

@@ -16,7 +16,7 @@
 #include "model/checkpoint/manifest.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/network/exceptions.h"
-#include "model/training/named_configs.h"
+#include "model/training/options.h"
 #include "model/training/run.h"
 
 namespace {
@@ -37,7 +37,6 @@ struct Arguments {
   std::vector<std::string> settings;
   std::string leaders;
   std::string from;
-  bool critic_only = false;
   int threads = 1;
   std::string device = "cpu";
 };
@@ -80,7 +79,6 @@ absl::StatusOr<std::vector<training::RunPlan>> Plans(const Arguments& arguments,
   plan.model_version = arguments.version;
   plan.description = arguments.description;
   plan.from = arguments.from;
-  plan.critic_only = arguments.critic_only;
   plan.device = arguments.device;
   std::vector<training::RunPlan> plans;
   const auto add = [&](const std::string& title, const std::string& folder,
@@ -151,8 +149,6 @@ void Declare(Arguments* arguments, CLI::App* app) {
       "leaders.share of the clips");
   app->add_option("--from", arguments->from,
                   "checkpoint folder whose weights the training begins with (default: random)");
-  app->add_flag("--critic-only", arguments->critic_only,
-                "only train a critic for the checkpoint of --from, which keeps its generator");
   app->add_option("--name", arguments->name, "name of the model (default: that of the data set)");
   app->add_option("--version-number", arguments->version, "version of the model")
       ->check(CLI::Range(1, 1000000))

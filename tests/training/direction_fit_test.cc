@@ -1,11 +1,10 @@
-#include "model/training/direction_fit.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "model/training/augment.h"
+#include "model/training/finishing.h"
 #include "tests/training/made_up_dataset.h"
 
 namespace duet::training {

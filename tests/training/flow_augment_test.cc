@@ -1,10 +1,9 @@
-#include "model/training/flow_augment.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "model/motion/limb_lengths.h"
+#include "model/training/flow_batches.h"
 #include "tests/support/sample_motion.h"
 #include "tests/training/made_up_dataset.h"
 

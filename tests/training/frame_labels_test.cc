@@ -1,9 +1,8 @@
-#include "model/training/frame_labels.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
+#include "model/training/sampler.h"
 #include "tests/support/matchers.h"
 
 namespace duet::training {

@@ -1,5 +1,3 @@
-#include "model/training/lone_leader.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "model/base/angle.h"
 #include "model/motion/feet.h"
 #include "model/motion/resample.h"
+#include "model/training/augment.h"
 #include "tests/support/matchers.h"
 #include "tests/training/flow_test_options.h"
 #include "tests/training/made_up_dataset.h"

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "model/training/named_configs.h"
 #include "tests/support/matchers.h"
 #include "tests/training/made_up_dataset.h"
 
@@ -23,7 +22,7 @@ TEST(TrainingOptionsTest, EveryNamedConfigurationParses) {
 }
 
 TEST(TrainingOptionsTest, ReplacementsReachTheirField) {
-  const auto options = ParseTrainingOptions(
+  const auto options = ParseConfig(
       DefaultJson(), {{"losses.bone", "0.25"}, {"optimiser.name", "rmsprop"}, {"epochs", "7"}});
   ASSERT_THAT(options, IsOk());
   EXPECT_EQ(std::get<PaperTraining>(options->method).losses.bone, 0.25);
@@ -43,15 +42,15 @@ TEST(TrainingOptionsTest, SettingsAreDescribedToTheLastDigit) {
 }
 
 TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {
-  const auto options = ParseTrainingOptions(DefaultJson());
+  const auto options = ParseConfig(DefaultJson());
   ASSERT_THAT(options, IsOk());
   for (const auto& [path, value] : Describe(*options)) {
-    EXPECT_THAT(ParseTrainingOptions(DefaultJson(), {{path, "{}"}}), Not(IsOk())) << path;
+    EXPECT_THAT(ParseConfig(DefaultJson(), {{path, "{}"}}), Not(IsOk())) << path;
   }
 }
 
 TEST(TrainingOptionsTest, EverySettingOfAFlowIsRequiredAndDescribed) {
-  const auto options = ParseTrainingOptions(FlowJson());
+  const auto options = ParseConfig(FlowJson());
   ASSERT_THAT(options, IsOk());
   ASSERT_TRUE(std::holds_alternative<FlowTraining>(options->method));
   const auto described = Describe(*options);
@@ -59,13 +58,13 @@ TEST(TrainingOptionsTest, EverySettingOfAFlowIsRequiredAndDescribed) {
   EXPECT_EQ(described.at("optimiser.warm_up_steps"), "100");
   EXPECT_EQ(described.count("losses.bone"), 0u);
   for (const auto& [path, value] : described) {
-    EXPECT_THAT(ParseTrainingOptions(FlowJson(), {{path, "{}"}}), Not(IsOk())) << path;
+    EXPECT_THAT(ParseConfig(FlowJson(), {{path, "{}"}}), Not(IsOk())) << path;
   }
 }
 
 TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
   const auto refusal = [](const std::string& path, const std::string& value) {
-    return std::string(ParseTrainingOptions(FlowJson(), {{path, value}}).status().message());
+    return std::string(ParseConfig(FlowJson(), {{path, value}}).status().message());
   };
   EXPECT_THAT(refusal("generator.kind", "wave"),
               HasSubstr("generator.kind: expected \"paper\" or \"flow\", got \"wave\""));
@@ -77,7 +76,7 @@ TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
   EXPECT_THAT(refusal("stillness.ends", "2"), HasSubstr("stillness.ends"));
   EXPECT_THAT(refusal("optimiser.schedule", "constant"),
               HasSubstr("optimiser: unknown field \"last_share\""));
-  const auto tuned = ParseTrainingOptions(FlowJson(), {{"generator.steps", "5"}});
+  const auto tuned = ParseConfig(FlowJson(), {{"generator.steps", "5"}});
   ASSERT_THAT(tuned, IsOk());
   EXPECT_EQ(std::get<FlowTraining>(tuned->method).architecture.steps, 5);
 }
@@ -86,7 +85,7 @@ TEST(TrainingOptionsTest, ConfigurationsOfVersionOneAreRead) {
   nlohmann::json old = nlohmann::json::parse(FlowJson());
   old.erase("leaders");
   old.erase("stillness");
-  const auto options = ParseTrainingOptions(old.dump());
+  const auto options = ParseConfig(old.dump());
   ASSERT_THAT(options, IsOk());
   EXPECT_EQ(Describe(*options).at("leaders.share"), "0");
   EXPECT_EQ(Describe(*options).at("stillness.pauses"), "0");
@@ -96,7 +95,7 @@ TEST(TrainingOptionsTest, DerivedConfigurationChangesItsBase) {
   const auto options = ParseConfig(
       R"({"base": "default", "set": {"losses.bone": 0.5, "epochs": 3}})", {{"epochs", "4"}});
   ASSERT_THAT(options, IsOk());
-  auto expected = Describe(*ParseTrainingOptions(DefaultJson()));
+  auto expected = Describe(*ParseConfig(DefaultJson()));
   expected["losses.bone"] = "0.5";
   expected["epochs"] = "4";
   EXPECT_EQ(Describe(*options), expected);

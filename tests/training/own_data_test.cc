@@ -10,7 +10,7 @@
 #include "model/dataset/dataset.h"
 #include "model/importing/import.h"
 #include "model/torch_engine/torch_synthesizer.h"
-#include "model/training/named_configs.h"
+#include "model/training/options.h"
 #include "model/training/run.h"
 #include "tests/importing/bvh_people.h"
 #include "tests/support/matchers.h"

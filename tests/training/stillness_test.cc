@@ -1,5 +1,3 @@
-#include "model/training/stillness.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "model/body/limbs.h"
 #include "model/motion/limb_lengths.h"
 #include "model/motion/resample.h"
+#include "model/training/augment.h"
 #include "tests/support/matchers.h"
 #include "tests/training/flow_test_options.h"
 #include "tests/training/made_up_dataset.h"
