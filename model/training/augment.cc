@@ -51,11 +51,6 @@ void AddNoise(double deviation, base::Random* random, motion::Clip* clip) {
   for (motion::Vec3& point : clip->poses.all()) point += Normal3(deviation, random);
 }
 
-void Keep(int first, int frames, motion::Clip* clip) {
-  clip->poses.DropFront(first);
-  clip->poses.Resize(frames);
-}
-
 // Frames [first, end) of the time line, as frames from `first`.
 std::vector<dataset::LabelSpan> PartOf(const std::vector<dataset::LabelSpan>& labels, int first,
                                        int end) {
@@ -77,8 +72,9 @@ void Crop(base::Random* random, dataset::Sequence* sequence) {
   std::vector<dataset::LabelSpan> labels = PartOf(sequence->labels, first, first + kept);
   // A sequence without spans would count as one of a single class.
   if (labels.empty() && !sequence->labels.empty()) return;
-  Keep(first, kept, &pair->leader);
-  Keep(first, kept, &pair->follower);
+  for (motion::Clip* clip : {&pair->leader, &pair->follower}) {
+    clip->poses = motion::Part(clip->poses, first, kept);
+  }
   sequence->labels = std::move(labels);
 }
 

@@ -10,6 +10,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
+#include "model/base/status_macros.h"
 
 namespace duet::training {
 namespace {
@@ -65,8 +66,7 @@ absl::Status EpochTrainer::UseDevice(const std::string& device) {
 }
 
 absl::Status EpochTrainer::StartFrom(const checkpoint::Checkpoint& checkpoint) {
-  const absl::Status loaded = LoadWeights(checkpoint);
-  if (!loaded.ok()) return loaded;
+  DUET_RETURN_IF_ERROR(LoadWeights(checkpoint));
   average_ = Copies(generator_->parameters());
   best_ = Copies(generator_->parameters());
   return absl::OkStatus();
@@ -108,26 +108,19 @@ void EpochTrainer::Choose(double afd) {
   CopyInto(average_, best_);
 }
 
-template <typename Measure>
-void EpochTrainer::WithAverage(const Measure& measure) {
+double EpochTrainer::Validate(StartKnowledge start) {
+  if (validation_.empty()) return std::numeric_limits<double>::quiet_NaN();
   torch::NoGradGuard no_grad;
   const std::vector<torch::Tensor> parameters = generator_->parameters();
   const std::vector<torch::Tensor> trained = Copies(parameters);
   CopyInto(average_, parameters);
   generator_->eval();
-  measure();
-  CopyInto(trained, parameters);
-}
-
-double EpochTrainer::Validate(StartKnowledge start) {
-  if (validation_.empty()) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
-  WithAverage([&] {
-    for (const int index : validation_) {
-      sum += ValidationError(
-          CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)], start));
-    }
-  });
+  for (const int index : validation_) {
+    sum += ValidationError(
+        CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)], start));
+  }
+  CopyInto(trained, parameters);
   return sum / static_cast<double>(validation_.size());
 }
 

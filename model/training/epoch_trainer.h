@@ -110,9 +110,7 @@ class EpochTrainer {
   const std::vector<int> train_, validation_;
 
  private:
-  // Calls `measure` with the averaged parameters in the generator.
-  template <typename Measure>
-  void WithAverage(const Measure& measure);
+  // The mean error of the averaged generator over the validation sequences; NaN without any.
   double Validate(StartKnowledge start);
   // Keeps the weights of the epoch that has just ended if they are the best so far. `afd`: its
   // validation error.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "model/base/random.h"
+#include "model/base/status_macros.h"
 #include "model/checkpoint/architecture.h"
 #include "model/engine/capture_fits.h"
 #include "model/engine/critic.h"
@@ -186,9 +187,7 @@ absl::StatusOr<Material> Gather(const FlowTraining& flow, const checkpoint::Chec
                                 const dataset::Dataset& dataset, std::vector<int> train,
                                 base::Random* random) {
   const engine::ModelDescription& model = checkpoint.manifest.model;
-  const absl::StatusOr<std::unique_ptr<engine::Synthesizer>> synthesizer =
-      SynthesizerOf(checkpoint);
-  if (!synthesizer.ok()) return synthesizer.status();
+  DUET_TRY(const auto synthesizer, SynthesizerOf(checkpoint));
   // No more than the steps will draw.
   const auto most = static_cast<size_t>(
       std::max<int64_t>(1, flow.critic.steps * kHalfBatch / flow.critic.answers));
@@ -201,7 +200,7 @@ absl::StatusOr<Material> Gather(const FlowTraining& flow, const checkpoint::Chec
         MakeWindows(dataset, some, n % 2 == 0 ? StartKnowledge::kNone : StartKnowledge::kPose,
                     flow.target_smoothing, random);
     absl::Status status =
-        AddInputs(model, made, AnswerAll(**synthesizer, made.windows), &material.sampled);
+        AddInputs(model, made, AnswerAll(*synthesizer, made.windows), &material.sampled);
     // A captured follower is the same every time, but for the parts that `some` has.
     if (status.ok() && (n < 2 || some.size() < train.size())) {
       status = AddInputs(model, made, FinishMotions(model, made.windows, made.captured),
@@ -316,16 +315,15 @@ absl::StatusOr<TrainedCritic> TrainCritic(const FlowTraining& flow, uint64_t see
                                           const dataset::Dataset& dataset,
                                           const std::vector<int>& train) {
   base::Random random(seed);
-  const absl::StatusOr<Material> material = Gather(flow, generator, dataset, train, &random);
-  if (!material.ok()) return material.status();
-  const Scale scale = ScaleOf(material->captured, dataset.class_count());
+  DUET_TRY(const Material material, Gather(flow, generator, dataset, train, &random));
+  const Scale scale = ScaleOf(material.captured, dataset.class_count());
   torch::manual_seed(seed);
   CriticModule critic(scale.mean.size(0));
   Optimiser optimiser(OptimiserSettings(), critic->parameters(), flow.critic.steps);
   TrainedCritic trained;
   const int64_t last = std::max<int64_t>(1, flow.critic.steps / 10);
   for (int64_t step = 0; step < flow.critic.steps; ++step) {
-    const CriticBatch batch = DrawBatch(*material, scale, &random);
+    const CriticBatch batch = DrawBatch(material, scale, &random);
     const torch::Tensor loss =
         F::binary_cross_entropy_with_logits(critic(batch.input, batch.mask), batch.target);
     loss.backward();
@@ -436,10 +434,8 @@ absl::StatusOr<std::vector<uint64_t>> ChooseDefaultSeeds(const engine::Synthesiz
   std::vector<ClassPairs> classes = DrawPairs(dataset, train);
   std::vector<double> unlikeness;
   for (uint64_t seed = 0; seed < kTried; ++seed) {
-    const absl::StatusOr<double> one =
-        Unlikeness(synthesizer, dataset.skeleton.root, &classes, seed);
-    if (!one.ok()) return one.status();
-    unlikeness.push_back(*one);
+    DUET_TRY(unlikeness.emplace_back(),
+             Unlikeness(synthesizer, dataset.skeleton.root, &classes, seed));
   }
   std::vector<uint64_t> seeds(kTried);
   std::iota(seeds.begin(), seeds.end(), uint64_t{0});

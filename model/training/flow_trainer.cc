@@ -85,8 +85,11 @@ void FlowTrainer::AddBodyScores(const FlowBatch& batch, const torch::Tensor& ans
   const motion::Skeleton& skeleton = manifest_.model.skeleton;
   const torch::Tensor base = batch.input.base.unsqueeze(1) / architecture_.offset_scale;
   if (energy.feet_weight > 0 && skeleton.feet) {
+    // The motion of a foot, in offsets per frame, below which it stands.
+    const double still =
+        flow_.slide_speed / manifest_.model.frame_rate_hz / architecture_.offset_scale;
     const auto motions = [&](const torch::Tensor& motion) {
-      return network::FootMotions(motion, *skeleton.feet, StillPerFrame());
+      return network::FootMotions(motion, *skeleton.feet, still);
     };
     add(energy.feet_weight,
         network::EnergyScores(motions(answers), motions(batch.target), lengths - 1),
@@ -128,10 +131,6 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
   AddBodyScores(batch, answers, add, report);
   means_.Add(&report->generator, total);
   return total;
-}
-
-double FlowTrainer::StillPerFrame() const {
-  return flow_.slide_speed / manifest_.model.frame_rate_hz / architecture_.offset_scale;
 }
 
 torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* report) {
@@ -184,9 +183,11 @@ FlowEpoch FlowTrainer::TakeEpoch() {
 
 FlowBatch FlowTrainer::NextBatch(base::Random* random, std::vector<FlowExample>* examples) const {
   if (ScoresAnswers(epoch()) && flow_.own.share > 0) {
-    ContinueOwnMotion(
-        dataset_.skeleton, flow_.own, [this](const auto inputs) { return AnswerNow(inputs); },
-        random, examples);
+    const auto answer = [this](absl::Span<const engine::NetworkInput> inputs) {
+      const torch::NoGradGuard no_grad;
+      return network::TakeAll(network::AnswerWindows(generator_, manifest_, inputs), inputs);
+    };
+    ContinueOwnMotion(dataset_.skeleton, flow_.own, answer, random, examples);
   }
   FlowBatch batch = MakeFlowBatch(manifest_, base_poses_, *examples);
   batch.input = batch.input.To(generator_->device());
@@ -211,12 +212,6 @@ void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
     ++step;
   }
   means_.Write(steps_per_epoch_);
-}
-
-std::vector<motion::Poses> FlowTrainer::AnswerNow(
-    absl::Span<const engine::NetworkInput> inputs) const {
-  const torch::NoGradGuard no_grad;
-  return network::TakeAll(network::AnswerWindows(generator_, manifest_, inputs), inputs);
 }
 
 double FlowTrainer::ValidationError(const Example& example) {

@@ -67,8 +67,6 @@ class FlowTrainer : public EpochTrainer {
   FlowEpoch TakeEpoch();
   // A batch on the network's device. Its clips may first continue the network's own motion.
   FlowBatch NextBatch(base::Random* random, std::vector<FlowExample>* examples) const;
-  // Answers of the network as it is now.
-  std::vector<motion::Poses> AnswerNow(absl::Span<const engine::NetworkInput> inputs) const;
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor DrawSource(const FlowBatch& batch) const;
@@ -78,8 +76,6 @@ class FlowTrainer : public EpochTrainer {
   template <typename Add>
   void AddBodyScores(const FlowBatch& batch, const torch::Tensor& answers, const Add& add,
                      EpochReport* report);
-  // The motion of a foot, in offsets per frame, below which it stands.
-  double StillPerFrame() const;
 
   const FlowTraining& flow_;
   const checkpoint::FlowArchitecture& architecture_;

@@ -112,84 +112,74 @@ class SettingFields {
 
 constexpr int64_t kMostSteps = 100000000;
 
-void DeclareFlow(SettingFields* fields, FlowTraining* flow) {
-  fields->Number("dropout", 0, 0.95, &flow->dropout);
-  fields->Int("passes", 1, kMaxEpochs, &flow->passes);
-  fields->Int("least_steps", 0, kMostSteps, &flow->least_steps);
-  fields->Number("window_seconds", 0, 60, &flow->window_seconds);
-  fields->Number("stride_seconds", 0.01, 60, &flow->stride_seconds);
-  fields->Number("lookahead_seconds", 0, 60, &flow->lookahead_seconds);
-  fields->Number("target_smoothing", 0, 100, &flow->target_smoothing);
-  fields->Number("pair_scale", 0, 0.9, &flow->pair_scale);
-  fields->Share("unlabelled", &flow->unlabelled);
-  fields->Share("several_known", &flow->several_known);
-  fields->Number("known_noise", 0, 10, &flow->known_noise);
-  fields->Number("difference_weight", 0, kMaxWeight, &flow->difference_weight);
-  fields->Number("bone_weight", 0, kMaxWeight, &flow->bone_weight);
-  fields->Number("slide_speed", 0, 100, &flow->slide_speed);
-  fields->Number("least_remaining", 1e-6, 1, &flow->least_remaining);
-  fields->Number("noise_share", 0, 2, &flow->noise_share);
-  if (fields->Has("class_balance")) fields->Share("class_balance", &flow->class_balance);
-}
-
-void DeclareDrift(SettingFields* fields, FlowTraining::Drift* drift) {
-  fields->Share("share", &drift->share);
-  fields->Number("tilt", 0, 4, &drift->tilt);
-  fields->Number("bend", 0, 4, &drift->bend);
-  fields->Number("turn", 0, 4, &drift->turn);
-  fields->Number("root", 0, 10, &drift->root);
-  fields->Number("height", 0, 10, &drift->height);
-  fields->Number("joints", 0, 10, &drift->joints);
-  fields->Int("frames", 1, 1000, &drift->frames);
-}
-
-void DeclareLive(SettingFields* fields, FlowTraining::Live* live) {
-  fields->Share("share", &live->share);
-  fields->Share("several_known", &live->several_known);
-  fields->Number("remade_seconds", 0, 60, &live->remade_seconds);
-  fields->Number("delay_seconds", 0, 60, &live->delay_seconds);
-  fields->Number("future_seconds", 0.1, 60, &live->future_seconds);
-}
-
-void DeclareEnergy(SettingFields* fields, FlowTraining::Energy* energy) {
-  fields->Share("from", &energy->from);
-  fields->Int("answers", 2, 64, &energy->answers);
-  fields->Number("velocity_weight", 0, kMaxWeight, &energy->velocity_weight);
-  fields->Number("block_weight", 0, kMaxWeight, &energy->block_weight);
-  fields->Int("block_frames", 2, 1000, &energy->block_frames);
-  fields->Number("feet_weight", 0, kMaxWeight, &energy->feet_weight);
-  fields->Number("hands_weight", 0, kMaxWeight, &energy->hands_weight);
-  fields->Number("near_hands", 1e-3, 10, &energy->near_hands);
-}
-
-void DeclareStillness(SettingFields* fields, FlowTraining::Stillness* stillness) {
-  fields->Share("pauses", &stillness->pauses);
-  fields->Share("ends", &stillness->ends);
-  fields->Share("motionless", &stillness->motionless);
-  fields->Share("unlabelled", &stillness->unlabelled);
-  fields->Share("clean", &stillness->clean);
-}
-
 void Declare(SettingFields* fields, FlowTraining* flow) {
-  fields->Section("flow", [&] { DeclareFlow(fields, flow); });
+  fields->Section("flow", [&] {
+    fields->Number("dropout", 0, 0.95, &flow->dropout);
+    fields->Int("passes", 1, kMaxEpochs, &flow->passes);
+    fields->Int("least_steps", 0, kMostSteps, &flow->least_steps);
+    fields->Number("window_seconds", 0, 60, &flow->window_seconds);
+    fields->Number("stride_seconds", 0.01, 60, &flow->stride_seconds);
+    fields->Number("lookahead_seconds", 0, 60, &flow->lookahead_seconds);
+    fields->Number("target_smoothing", 0, 100, &flow->target_smoothing);
+    fields->Number("pair_scale", 0, 0.9, &flow->pair_scale);
+    fields->Share("unlabelled", &flow->unlabelled);
+    fields->Share("several_known", &flow->several_known);
+    fields->Number("known_noise", 0, 10, &flow->known_noise);
+    fields->Number("difference_weight", 0, kMaxWeight, &flow->difference_weight);
+    fields->Number("bone_weight", 0, kMaxWeight, &flow->bone_weight);
+    fields->Number("slide_speed", 0, 100, &flow->slide_speed);
+    fields->Number("least_remaining", 1e-6, 1, &flow->least_remaining);
+    fields->Number("noise_share", 0, 2, &flow->noise_share);
+    if (fields->Has("class_balance")) fields->Share("class_balance", &flow->class_balance);
+  });
   fields->Section("frame_labels", [&, &labels = flow->frame_labels] {
     fields->Number("shift", 0, 1000, &labels.shift);
     fields->Share("unlabelled", &labels.unlabelled);
     fields->Share("avoided", &labels.avoided);
   });
-  fields->Section("drift", [&] { DeclareDrift(fields, &flow->drift); });
-  fields->Section("live", [&] { DeclareLive(fields, &flow->live); });
+  fields->Section("drift", [&, &drift = flow->drift] {
+    fields->Share("share", &drift.share);
+    fields->Number("tilt", 0, 4, &drift.tilt);
+    fields->Number("bend", 0, 4, &drift.bend);
+    fields->Number("turn", 0, 4, &drift.turn);
+    fields->Number("root", 0, 10, &drift.root);
+    fields->Number("height", 0, 10, &drift.height);
+    fields->Number("joints", 0, 10, &drift.joints);
+    fields->Int("frames", 1, 1000, &drift.frames);
+  });
+  fields->Section("live", [&, &live = flow->live] {
+    fields->Share("share", &live.share);
+    fields->Share("several_known", &live.several_known);
+    fields->Number("remade_seconds", 0, 60, &live.remade_seconds);
+    fields->Number("delay_seconds", 0, 60, &live.delay_seconds);
+    fields->Number("future_seconds", 0.1, 60, &live.future_seconds);
+  });
   fields->Section("own", [&, &own = flow->own] {
     fields->Share("share", &own.share);
     fields->Int("most_frames", 1, 1000, &own.most_frames);
     fields->Int("return_frames", 1, 1000, &own.return_frames);
   });
-  fields->Section("energy", [&] { DeclareEnergy(fields, &flow->energy); });
+  fields->Section("energy", [&, &energy = flow->energy] {
+    fields->Share("from", &energy.from);
+    fields->Int("answers", 2, 64, &energy.answers);
+    fields->Number("velocity_weight", 0, kMaxWeight, &energy.velocity_weight);
+    fields->Number("block_weight", 0, kMaxWeight, &energy.block_weight);
+    fields->Int("block_frames", 2, 1000, &energy.block_frames);
+    fields->Number("feet_weight", 0, kMaxWeight, &energy.feet_weight);
+    fields->Number("hands_weight", 0, kMaxWeight, &energy.hands_weight);
+    fields->Number("near_hands", 1e-3, 10, &energy.near_hands);
+  });
   if (fields->Has("leaders")) {
     fields->Section("leaders", [&] { fields->Share("share", &flow->leaders.share); });
   }
   if (fields->Has("stillness")) {
-    fields->Section("stillness", [&] { DeclareStillness(fields, &flow->stillness); });
+    fields->Section("stillness", [&, &stillness = flow->stillness] {
+      fields->Share("pauses", &stillness.pauses);
+      fields->Share("ends", &stillness.ends);
+      fields->Share("motionless", &stillness.motionless);
+      fields->Share("unlabelled", &stillness.unlabelled);
+      fields->Share("clean", &stillness.clean);
+    });
   }
   if (fields->Has("critic")) {
     fields->Section("critic", [&, &critic = flow->critic] {
@@ -222,41 +212,37 @@ void Declare(SettingFields* fields, PaperTraining* paper) {
 
 constexpr int kMaxDepth = 4;
 
-void DeclareOptimiser(SettingFields* fields, TrainingOptions::Optimiser* optimiser) {
-  fields->Word("name", {"adam", "rmsprop"}, &optimiser->name);
-  fields->Number("learning_rate", 1e-9, 10, &optimiser->learning_rate);
-  fields->Word("schedule", {"one_cycle", "constant", "cosine"}, &optimiser->schedule);
-  if (optimiser->schedule == "cosine") {
-    fields->Int("warm_up_steps", 0, kMaxEpochs, &optimiser->warm_up_steps);
-    fields->Share("last_share", &optimiser->last_share);
-    fields->Number("second_moment", 0, 0.999999, &optimiser->second_moment);
-  }
-  fields->Number("weight_decay", 0, 10, &optimiser->weight_decay);
-  fields->Number("gradient_clip", 0, 1e9, &optimiser->gradient_clip);
-  fields->Number("average_decay", 0, 0.999999, &optimiser->average_decay);
-}
-
-void DeclareAugmentation(SettingFields* fields, TrainingOptions::Augmentation* augmentation) {
-  fields->Share("mirror", &augmentation->mirror);
-  fields->Share("swap_roles", &augmentation->swap_roles);
-  fields->Number("body_scale", 0, 0.9, &augmentation->body_scale);
-  fields->Number("time_warp", 0, 2, &augmentation->time_warp);
-  fields->Number("yaw", 0, 4, &augmentation->yaw);
-  fields->Number("leader_yaw", 0, 4, &augmentation->leader_yaw);
-  fields->Number("noise", 0, 10, &augmentation->noise);
-  fields->Number("body_noise", 0, 10, &augmentation->body_noise);
-  fields->Share("crop", &augmentation->crop);
-}
-
 // Declares every setting that does not depend on the method.
 void Declare(SettingFields* fields, TrainingOptions* options) {
-  fields->Section("optimiser", [&] { DeclareOptimiser(fields, &options->optimiser); });
+  fields->Section("optimiser", [&, &optimiser = options->optimiser] {
+    fields->Word("name", {"adam", "rmsprop"}, &optimiser.name);
+    fields->Number("learning_rate", 1e-9, 10, &optimiser.learning_rate);
+    fields->Word("schedule", {"one_cycle", "constant", "cosine"}, &optimiser.schedule);
+    if (optimiser.schedule == "cosine") {
+      fields->Int("warm_up_steps", 0, kMaxEpochs, &optimiser.warm_up_steps);
+      fields->Share("last_share", &optimiser.last_share);
+      fields->Number("second_moment", 0, 0.999999, &optimiser.second_moment);
+    }
+    fields->Number("weight_decay", 0, 10, &optimiser.weight_decay);
+    fields->Number("gradient_clip", 0, 1e9, &optimiser.gradient_clip);
+    fields->Number("average_decay", 0, 0.999999, &optimiser.average_decay);
+  });
   fields->Int("epochs", 1, kMaxEpochs, &options->epochs);
   fields->Int("batch", 1, 65536, &options->batch);
   int64_t seed = static_cast<int64_t>(options->seed);
   fields->Int("seed", 0, INT64_MAX, &seed);
   options->seed = static_cast<uint64_t>(seed);
-  fields->Section("augmentation", [&] { DeclareAugmentation(fields, &options->augmentation); });
+  fields->Section("augmentation", [&, &augmentation = options->augmentation] {
+    fields->Share("mirror", &augmentation.mirror);
+    fields->Share("swap_roles", &augmentation.swap_roles);
+    fields->Number("body_scale", 0, 0.9, &augmentation.body_scale);
+    fields->Number("time_warp", 0, 2, &augmentation.time_warp);
+    fields->Number("yaw", 0, 4, &augmentation.yaw);
+    fields->Number("leader_yaw", 0, 4, &augmentation.leader_yaw);
+    fields->Number("noise", 0, 10, &augmentation.noise);
+    fields->Number("body_noise", 0, 10, &augmentation.body_noise);
+    fields->Share("crop", &augmentation.crop);
+  });
   fields->Section("start", [&, &start = options->start] {
     fields->Share("root", &start.root);
     fields->Share("pose", &start.pose);

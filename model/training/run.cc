@@ -17,8 +17,8 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/base/status_macros.h"
+#include "model/dataset/dataset.h"
 #include "model/dataset/lone_leaders.h"
-#include "model/dataset/time_line.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/exceptions.h"
 #include "model/training/augment.h"
@@ -240,8 +240,7 @@ std::string Row(const EpochReport& r) {
                          r.whole_answers ? 1 : 0);
 }
 
-absl::Status WriteText(const std::filesystem::path& file, const std::string& text,
-                       std::ios::openmode mode) {
+absl::Status WriteText(const fs::path& file, const std::string& text, std::ios::openmode mode) {
   std::ofstream out(file, mode);
   out << text;
   out.flush();
@@ -263,22 +262,18 @@ absl::Status ResumeLog(const fs::path& file, int64_t epoch) {
   return WriteText(file, kept, std::ios::trunc);
 }
 
-// "[#####.....] epoch 12/60  loss 3.214  val 0.61  0:14 left". One line, no line end.
-std::string ProgressLine(const std::string& title, const EpochReport& report) {
-  const int filled =
-      static_cast<int>(kBarWidth * report.epoch / std::max<int64_t>(report.epochs, 1));
+// "[#####.....] epoch 12/60  loss 3.214  val 0.61  0:14 left"; on a terminal, over the line before.
+void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
+  const auto filled = static_cast<size_t>(kBarWidth * report.epoch / report.epochs);
   const int64_t left =
       std::llround(static_cast<double>(report.epochs - report.epoch) * report.seconds);
   const std::string validation =
       std::isnan(report.validation_afd) ? "" : absl::StrFormat("  val %.4f", report.validation_afd);
-  return absl::StrFormat("%s [%s%s] epoch %d/%d  loss %.4f%s  %d:%02d left", title,
-                         std::string(static_cast<size_t>(filled), '#'),
-                         std::string(static_cast<size_t>(kBarWidth - filled), '.'), report.epoch,
-                         report.epochs, report.generator, validation, left / 60, left % 60);
-}
-
-void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
-  *progress << (terminal ? "\r" : "") << ProgressLine(plan.title, report)
+  *progress << (terminal ? "\r" : "")
+            << absl::StrFormat("%s [%s%s] epoch %d/%d  loss %.4f%s  %d:%02d left", plan.title,
+                               std::string(filled, '#'), std::string(kBarWidth - filled, '.'),
+                               report.epoch, report.epochs, report.generator, validation, left / 60,
+                               left % 60)
             << (terminal && report.epoch < report.epochs ? "\033[K" : "\n") << std::flush;
 }
 
