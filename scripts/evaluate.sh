@@ -76,7 +76,7 @@ measure() {
   "${bin}/duet-eval" sweep --data "${data}" --runs "ours=${runs}/default" --out "${results}"
   "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" --out "${results}"
   "${bin}/duet-eval" latent --data "${data}" --runs "ours=${runs}/default" \
-    --runs "mshl22=${runs}/mshl22" --clips all --out "${results}"
+    --runs "mshl22=${runs}/mshl22" --out "${results}"
 }
 
 train

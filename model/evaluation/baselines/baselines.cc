@@ -1,23 +1,28 @@
 #include "model/evaluation/baselines/baselines.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <memory>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/random.h"
 #include "model/base/status_macros.h"
-#include "model/evaluation/baselines/class_models.h"
 
 namespace duet::evaluation::baselines {
 namespace {
 
+constexpr auto kEveryFrame = motion::StandardOrigin::kEveryFrame;
+constexpr auto kFirstFrame = motion::StandardOrigin::kFirstFrame;
+
 struct Entry {
   const char* name;
   // Learns a model of each class; null: holds the follower's first pose.
-  std::unique_ptr<ClassModel> (*learn)(const std::vector<StandardPair>& pairs);
+  ClassModel (*learn)(const std::vector<StandardPair>& pairs);
 };
 
 constexpr Entry kBaselines[] = {
@@ -31,15 +36,16 @@ constexpr Entry kBaselines[] = {
 };
 
 // Shapes: returns [classes].
-absl::StatusOr<std::vector<std::unique_ptr<ClassModel>>> LearnClasses(
-    const Entry& entry, const dataset::Dataset& dataset, const std::vector<int>& train) {
+absl::StatusOr<std::vector<ClassModel>> LearnClasses(const Entry& entry,
+                                                     const dataset::Dataset& dataset,
+                                                     const std::vector<int>& train) {
   std::vector<std::vector<StandardPair>> by_class(dataset.classes.size());
   for (const int i : train) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
     by_class[static_cast<size_t>(sequence.interaction_class)].push_back(
         StandardiseSequence(dataset.skeleton, sequence));
   }
-  std::vector<std::unique_ptr<ClassModel>> models;
+  std::vector<ClassModel> models;
   for (size_t c = 0; c < by_class.size(); ++c) {
     if (by_class[c].empty()) {
       return absl::InvalidArgumentError(absl::StrCat(entry.name,
@@ -65,6 +71,57 @@ std::vector<const dataset::Sequence*> Candidates(const dataset::Dataset& dataset
   return enough.empty() ? all : enough;
 }
 
+// Frames on either side over which a velocity is measured.
+constexpr Eigen::Index kVelocityReach = 2;
+// Metres that correspond to the whole duration, relative to a pose of 3 J coordinates.
+constexpr double kTimeWeight = 1.0;
+// Weight of one metre of the root's path, which moves all joints.
+constexpr double kWayWeight = 2.0;
+
+// Components with less than this share of the strongest one's variance are rounding.
+constexpr double kNoVariance = 1e-10;
+
+Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world) {
+  const Rows pose = ToRows(frame.Apply(world));
+  const Eigen::Index frames = pose.rows(), width = pose.cols();
+  Rows cues(frames, 2 * width + 4);
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    const Eigen::Index before = std::max<Eigen::Index>(t - kVelocityReach, 0);
+    const Eigen::Index after = std::min(t + kVelocityReach, frames - 1);
+    cues.row(t).head(width) = pose.row(t);
+    cues.row(t).segment(width, width) = pose.row(after) - pose.row(before);
+    // For any joint, its coordinates in this frame's system and in the first frame's differ by the
+    // root's movement.
+    const motion::Vec3 way =
+        frame.Apply(world.at(static_cast<int>(t), 0)) -
+        motion::Vec3{static_cast<float>(pose(t, 0)), static_cast<float>(pose(t, 1)),
+                     static_cast<float>(pose(t, 2))};
+    cues.row(t).segment(2 * width, 3) = kWayWeight * Eigen::RowVector3d(way.x, way.y, way.z);
+    cues(t, 2 * width + 3) = kTimeWeight * static_cast<double>(t) /
+                             static_cast<double>(std::max<Eigen::Index>(frames - 1, 1));
+  }
+  return cues;
+}
+
+constexpr int kMaxIterations = 100;
+
+// Picks rows with probability proportional to the squared distance to those picked before.
+Rows Seeds(const Rows& rows, int clusters, base::Random* random) {
+  Rows centres(clusters, rows.cols());
+  Eigen::VectorXd nearest =
+      Eigen::VectorXd::Constant(rows.rows(), std::numeric_limits<double>::infinity());
+  Eigen::Index pick =
+      static_cast<Eigen::Index>(random->Uniform() * static_cast<double>(rows.rows()));
+  int count = 0;
+  while (count < clusters) {
+    centres.row(count++) = rows.row(pick);
+    nearest = nearest.cwiseMin((rows.rowwise() - rows.row(pick)).rowwise().squaredNorm());
+    if (nearest.sum() <= 0) break;
+    pick = SampleIndex(nearest, random);
+  }
+  return centres.topRows(count);
+}
+
 }  // namespace
 
 std::vector<std::string> BaselineNames() {
@@ -78,7 +135,7 @@ absl::StatusOr<std::vector<metrics::ScoredMotion>> RunBaseline(const std::string
                                                                const dataset::Split& split) {
   const Entry& entry = *std::find_if(std::begin(kBaselines), std::end(kBaselines),
                                      [&](const Entry& one) { return one.name == name; });
-  std::vector<std::unique_ptr<ClassModel>> models;
+  std::vector<ClassModel> models;
   if (entry.learn != nullptr) {
     DUET_TRY(models, LearnClasses(entry, dataset, split.train));
   }
@@ -91,9 +148,10 @@ absl::StatusOr<std::vector<metrics::ScoredMotion>> RunBaseline(const std::string
         answer.Append(sequence.pair.follower.poses[0]);
       }
     } else {
-      const ClassModel& model = *models[static_cast<size_t>(sequence.interaction_class)];
-      const Rows follower = model.Predict(StandardLeader(dataset.skeleton, sequence));
-      answer = BaselineStandardisation(dataset.skeleton, sequence).Invert(FromRows(follower));
+      const ClassModel& predict = models[static_cast<size_t>(sequence.interaction_class)];
+      const Rows follower = predict(StandardLeader(dataset.skeleton, sequence));
+      answer =
+          metrics::StandardOf(dataset.skeleton, sequence, kEveryFrame).Invert(FromRows(follower));
     }
     const auto all = answer.all();
     if (!std::all_of(all.begin(), all.end(), [](motion::Vec3 p) { return IsFinite(p); })) {
@@ -107,7 +165,6 @@ absl::StatusOr<std::vector<metrics::ScoredMotion>> RunBaseline(const std::string
 
 absl::StatusOr<std::vector<metrics::ScoredMotion>> AnswerWithOtherPeople(
     const dataset::Dataset& dataset, const dataset::Split& split, uint64_t seed) {
-  constexpr auto kFirstFrame = motion::StandardOrigin::kFirstFrame;
   base::Random random(seed);
   std::vector<metrics::ScoredMotion> answers;
   for (const int index : split.test) {
@@ -121,15 +178,173 @@ absl::StatusOr<std::vector<metrics::ScoredMotion>> AnswerWithOtherPeople(
     }
     const auto drawn = random.Below(static_cast<int64_t>(candidates.size()));
     const dataset::Sequence& other = *candidates[static_cast<size_t>(drawn)];
-    const Rows motion = ToRows(BaselineStandardisation(dataset.skeleton, other, kFirstFrame)
-                                   .Apply(other.pair.follower.poses));
+    const Rows motion = ToRows(
+        metrics::StandardOf(dataset.skeleton, other, kFirstFrame).Apply(other.pair.follower.poses));
     const Rows fitted =
         motion.rows() < frames ? StretchTo(motion, frames) : Rows(motion.topRows(frames));
     answers.push_back(
         {index,
-         BaselineStandardisation(dataset.skeleton, asked, kFirstFrame).Invert(FromRows(fitted))});
+         metrics::StandardOf(dataset.skeleton, asked, kFirstFrame).Invert(FromRows(fitted))});
   }
   return answers;
+}
+
+Rows ToRows(const motion::Poses& poses) {
+  Rows rows(poses.frame_count(), 3 * poses.joint_count());
+  double* out = rows.data();
+  for (const motion::Vec3& position : poses.all()) {
+    *out++ = position.x;
+    *out++ = position.y;
+    *out++ = position.z;
+  }
+  return rows;
+}
+
+motion::Poses FromRows(const Rows& rows) {
+  motion::Poses poses(static_cast<int>(rows.rows()), static_cast<int>(rows.cols() / 3));
+  const double* value = rows.data();
+  for (motion::Vec3& position : poses.all()) {
+    position = {static_cast<float>(value[0]), static_cast<float>(value[1]),
+                static_cast<float>(value[2])};
+    value += 3;
+  }
+  return poses;
+}
+
+StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
+  const motion::Standardisation frame = metrics::StandardOf(skeleton, sequence, kEveryFrame);
+  const motion::Poses& leader = sequence.pair.leader.poses;
+  return {ToRows(frame.Apply(leader)), LeaderCues(frame, leader), {}};
+}
+
+StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
+                                 const dataset::Sequence& sequence) {
+  StandardPair pair = StandardLeader(skeleton, sequence);
+  const motion::Poses& follower = sequence.pair.follower.poses;
+  pair.follower = ToRows(metrics::StandardOf(skeleton, sequence, kEveryFrame).Apply(follower));
+  return pair;
+}
+
+Rows StretchTo(const Rows& motion, Eigen::Index frames) {
+  Rows out(frames, motion.cols());
+  const double last = static_cast<double>(motion.rows() - 1);
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    const double at =
+        frames == 1 ? 0 : static_cast<double>(t) * last / static_cast<double>(frames - 1);
+    const Eigen::Index whole = std::min(static_cast<Eigen::Index>(at), motion.rows() - 1);
+    const Eigen::Index next = std::min(whole + 1, motion.rows() - 1);
+    out.row(t) = motion.row(whole) +
+                 (at - static_cast<double>(whole)) * (motion.row(next) - motion.row(whole));
+  }
+  return out;
+}
+
+Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b) {
+  Eigen::MatrixXd distances = -2 * a * b.transpose();
+  distances.colwise() += a.rowwise().squaredNorm();
+  distances.rowwise() += b.rowwise().squaredNorm().transpose();
+  return distances.cwiseMax(0);
+}
+
+PoseSpace::PoseSpace(const Rows& rows, Eigen::Index dimensions) : mean_(rows.colwise().mean()) {
+  const Rows centred = rows.rowwise() - mean_;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred.transpose() * centred);
+  const Eigen::VectorXd& variance = solver.eigenvalues();  // ascending
+  const Eigen::Index values = rows.cols();
+  const double least = kNoVariance * std::max(variance(values - 1), 0.0);
+  Eigen::Index kept = std::min(dimensions, values);
+  while (kept > 1 && variance(values - kept) <= least) --kept;
+  basis_ = solver.eigenvectors().rightCols(kept).rowwise().reverse();
+}
+
+Rows PoseSpace::Project(const Rows& rows) const { return (rows.rowwise() - mean_) * basis_; }
+
+Rows PoseSpace::Reconstruct(const Rows& components) const {
+  return (components * basis_.transpose()).rowwise() + mean_;
+}
+
+Rows StackRows(const std::vector<Rows>& parts) {
+  Eigen::Index rows = 0;
+  for (const Rows& part : parts) rows += part.rows();
+  Rows stacked(rows, parts.front().cols());
+  rows = 0;
+  for (const Rows& part : parts) {
+    stacked.middleRows(rows, part.rows()) = part;
+    rows += part.rows();
+  }
+  return stacked;
+}
+
+Rows Stack(const std::vector<StandardPair>& pairs, Rows StandardPair::*part) {
+  std::vector<Rows> parts;
+  for (const StandardPair& pair : pairs) parts.push_back(pair.*part);
+  return StackRows(parts);
+}
+
+std::vector<int> NearestCentres(const Rows& centres, const Rows& rows) {
+  std::vector<int> nearest;
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    Eigen::Index of_row = 0;
+    (centres.rowwise() - rows.row(i)).rowwise().squaredNorm().minCoeff(&of_row);
+    nearest.push_back(static_cast<int>(of_row));
+  }
+  return nearest;
+}
+
+Rows KMeans(const Rows& rows, int clusters, uint64_t seed) {
+  base::Random random(seed);
+  Rows centres = Seeds(rows, clusters, &random);
+  std::vector<int> members;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    std::vector<int> nearest = NearestCentres(centres, rows);
+    if (nearest == members) break;
+    members = std::move(nearest);
+    Rows sums = Rows::Zero(centres.rows(), centres.cols());
+    Eigen::VectorXd counts = Eigen::VectorXd::Zero(centres.rows());
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      const int centre = members[static_cast<size_t>(i)];
+      sums.row(centre) += rows.row(i);
+      counts(centre) += 1;
+    }
+    // A centre that lost all its rows stays where it was.
+    for (Eigen::Index c = 0; c < centres.rows(); ++c) {
+      if (counts(c) > 0) centres.row(c) = sums.row(c) / counts(c);
+    }
+  }
+  return centres;
+}
+
+PathPosterior SumOverPaths(const ChainWeights& chain, const Rows& log_arrivals,
+                           Eigen::MatrixXd* steps) {
+  const Eigen::Index frames = log_arrivals.rows(), states = log_arrivals.cols();
+  // Relative to each frame's largest, and messages that sum to one: no underflow.
+  const Eigen::VectorXd largest = log_arrivals.rowwise().maxCoeff();
+  const Rows arrivals = (log_arrivals.colwise() - largest).array().exp();
+  Rows forward(frames, states), backward(frames, states);
+  PathPosterior posterior;
+  posterior.log_sum = largest.sum();
+  forward.row(0) = chain.start;
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    if (t > 0) forward.row(t).noalias() = forward.row(t - 1) * chain.step;
+    forward.row(t).array() *= arrivals.row(t).array();
+    const double scale = forward.row(t).sum();
+    forward.row(t) /= scale;
+    posterior.log_sum += std::log(scale);
+  }
+  backward.row(frames - 1).setOnes();
+  for (Eigen::Index t = frames - 2; t >= 0; --t) {
+    const Eigen::VectorXd leaving =
+        arrivals.row(t + 1).cwiseProduct(backward.row(t + 1)).transpose();
+    backward.row(t) = (chain.step * leaving).transpose();
+    backward.row(t) /= backward.row(t).sum();
+    if (steps == nullptr) continue;
+    const Eigen::MatrixXd joint =
+        chain.step.cwiseProduct(forward.row(t).transpose() * leaving.transpose());
+    *steps += joint / joint.sum();
+  }
+  posterior.states = forward.cwiseProduct(backward);
+  posterior.states.array().colwise() /= posterior.states.rowwise().sum().array().eval();
+  return posterior;
 }
 
 }  // namespace duet::evaluation::baselines

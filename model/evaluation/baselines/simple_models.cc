@@ -1,25 +1,12 @@
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "model/evaluation/baselines/class_models.h"
+#include "model/evaluation/baselines/baselines.h"
 
 namespace duet::evaluation::baselines {
 namespace {
-
-class ClassMean : public ClassModel {
- public:
-  // Each frame has the same weight, as in the metric.
-  explicit ClassMean(const std::vector<StandardPair>& pairs)
-      : mean_(Stack(pairs, &StandardPair::follower).colwise().mean()) {}
-
-  Rows Predict(const StandardPair& leader) const override {
-    return mean_.replicate(leader.leader.rows(), 1);
-  }
-
- private:
-  Eigen::RowVectorXd mean_;
-};
 
 // A matching's cost so far and its number of matched rows.
 struct Path {
@@ -50,26 +37,6 @@ double TimeWarpedDistance(const Rows& a, const Rows& b) {
   }
   return previous[width].cost / previous[width].length;
 }
-
-class NearestNeighbour : public ClassModel {
- public:
-  explicit NearestNeighbour(const std::vector<StandardPair>& pairs) : pairs_(pairs) {}
-
-  Rows Predict(const StandardPair& leader) const override {
-    const StandardPair* nearest = nullptr;
-    double best = std::numeric_limits<double>::infinity();
-    for (const StandardPair& pair : pairs_) {
-      const double distance = TimeWarpedDistance(leader.leader, pair.leader);
-      if (nearest != nullptr && distance >= best) continue;
-      best = distance;
-      nearest = &pair;
-    }
-    return StretchTo(nearest->follower, leader.leader.rows());
-  }
-
- private:
-  std::vector<StandardPair> pairs_;
-};
 
 constexpr double kLogTwoPi = 1.8378770664093453;
 constexpr int kLeaderComponents = 4, kFollowerComponents = 8;
@@ -124,7 +91,7 @@ Eigen::RowVectorXd PooledVariance(const std::vector<Rows>& sequences) {
 //
 // Source: Rabiner 1989 (forward-backward, Baum-Welch); regression from a part of the output on the
 // rest as in Gaussian mixture regression (Calinon et al. 2010).
-class Hmm : public ClassModel {
+class Hmm {
  public:
   // Initialised by cutting every sequence into equal pieces.
   explicit Hmm(const std::vector<StandardPair>& pairs)
@@ -149,7 +116,7 @@ class Hmm : public ClassModel {
     }
   }
 
-  Rows Predict(const StandardPair& leader) const override {
+  Rows Predict(const StandardPair& leader) const {
     const Rows known = leader_.Project(leader.cues);
     const Rows posterior = SumOverPaths(chain_, LogDensities(known)).states;
     const Eigen::Index n = known.cols(), rest = states_[0].mean.size() - n;
@@ -222,16 +189,27 @@ class Hmm : public ClassModel {
 
 }  // namespace
 
-std::unique_ptr<ClassModel> LearnClassMean(const std::vector<StandardPair>& pairs) {
-  return std::make_unique<ClassMean>(pairs);
+ClassModel LearnClassMean(const std::vector<StandardPair>& pairs) {
+  // Each frame has the same weight, as in the metric.
+  const Eigen::RowVectorXd mean = Stack(pairs, &StandardPair::follower).colwise().mean();
+  return [mean](const StandardPair& leader) -> Rows {
+    return mean.replicate(leader.leader.rows(), 1);
+  };
 }
 
-std::unique_ptr<ClassModel> LearnNearestNeighbour(const std::vector<StandardPair>& pairs) {
-  return std::make_unique<NearestNeighbour>(pairs);
+ClassModel LearnNearestNeighbour(const std::vector<StandardPair>& pairs) {
+  return [pairs](const StandardPair& leader) {
+    std::vector<double> distances;
+    for (const StandardPair& pair : pairs) {
+      distances.push_back(TimeWarpedDistance(leader.leader, pair.leader));
+    }
+    const auto nearest = std::min_element(distances.begin(), distances.end()) - distances.begin();
+    return StretchTo(pairs[static_cast<size_t>(nearest)].follower, leader.leader.rows());
+  };
 }
 
-std::unique_ptr<ClassModel> LearnHmm(const std::vector<StandardPair>& pairs) {
-  return std::make_unique<Hmm>(pairs);
+ClassModel LearnHmm(const std::vector<StandardPair>& pairs) {
+  return [model = Hmm(pairs)](const StandardPair& leader) { return model.Predict(leader); };
 }
 
 }  // namespace duet::evaluation::baselines

@@ -8,6 +8,9 @@
 
 #include "model/dataset/dataset.h"
 #include "model/motion/poses.h"
+#include "model/motion/standardise.h"
+
+namespace duet::evaluation::metrics {
 
 // Distances between a synthesised follower and the captured one.
 //
@@ -18,8 +21,6 @@
 // vertical. In the raw unit, whose axes have different scales, it is invariant only to translation:
 // pass motions in world coordinates, as captured, not levelled. The paper also rotates them, but
 // after the scaling, which changes no norm.
-
-namespace duet::evaluation::metrics {
 
 // The unit that a displacement is measured in.
 enum class MetricUnit {
@@ -50,6 +51,13 @@ inline const dataset::Sequence& SequenceOf(const dataset::Dataset& dataset,
                                            const ScoredMotion& motion) {
   return dataset.sequences[static_cast<size_t>(motion.sequence)];
 }
+
+// The coordinates of a sequence's leader: its root at the origin, -z towards the partner if the
+// capture's setup has its direction, otherwise where the leader's hips face. The follower does not
+// matter.
+motion::Standardisation StandardOf(const motion::Skeleton& skeleton,
+                                   const dataset::Sequence& sequence,
+                                   motion::StandardOrigin origin);
 
 // Every metric of one motion by its name. Names are lower_snake_case, with the unit unless the
 // title of the table has it (report/metric_tables.cc). Metrics in SBU's raw unit are measured in
@@ -98,6 +106,61 @@ std::vector<ScoredMotion> BestAnswers(const dataset::Dataset& dataset,
 // Shapes: returns [classes].
 std::vector<double> MultimodalityByClass(const dataset::Dataset& dataset,
                                          const SampledMotions& samples);
+
+// Figures of what a classifier computes of motions: probabilities of classes, and features.
+
+// Shapes: [samples][features].
+using FeatureSet = std::vector<std::vector<float>>;
+
+// Frechet distance of two Gaussians fitted to the sets (FID when the features are an extractor's):
+// |mu1 - mu2|^2 + Tr(S1 + S2 - 2 (S1 S2)^(1/2)), covariances with divisor n - 1. Requires at least
+// 2 samples on both sides.
+//
+// Source: Heusel et al. 2017; paper section 4. Tr (S1 S2)^(1/2) is computed as the sum of the
+// singular values of A1^T A2 with S = A A^T (A: the centred samples over sqrt(n - 1)): their
+// squares are the eigenvalues of S1 S2. No square root of a rank-deficient matrix is taken, so sets
+// with fewer samples than features give exact values, never complex or negative ones.
+double FrechetDistance(const FeatureSet& a, const FeatureSet& b);
+
+// The mean Euclidean distance over all pairs of different samples. 0 for fewer than 2.
+double Diversity(const FeatureSet& features);
+
+// The share of samples whose nearest other sample (Euclidean) is of their class: how well the
+// classes are separated in the space itself. NaN for fewer than 2 samples. Shapes: classes
+// [samples].
+double NeighbourAccuracy(const FeatureSet& features, const std::vector<int>& classes);
+
+// The share of each class's motions whose likeliest class it is; NaN for a class without any.
+// Shapes: meant [motions], probabilities [motions][classes]; returns [classes].
+std::vector<double> ClassAccuracies(const std::vector<int>& meant,
+                                    const std::vector<std::vector<float>>& probabilities,
+                                    int classes);
+
+// Figures by class from the judges' results. Each fold has its own judge: features are comparable
+// only within a fold.
+
+// The results of a fold's judge for the fold's motions.
+struct JudgedFold {
+  std::vector<int> classes;                       // [motions], the requested classes
+  std::vector<std::vector<float>> probabilities;  // [motions][classes]
+  FeatureSet features;                            // [motions][features]
+};
+
+// ClassAccuracies over all folds. Shapes: returns [classes].
+std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes);
+
+// The Frechet distance between synthesised and captured motions of each class within a fold,
+// averaged over the folds with at least 2 motions of it on both sides; NaN without such a fold.
+// Shapes: made and captured [folds]; returns [classes].
+std::vector<double> FrechetByClass(const std::vector<JudgedFold>& made,
+                                   const std::vector<JudgedFold>& captured, int classes);
+
+// The same of all classes together: a fold has too few motions of one class to estimate their
+// spread.
+double PooledFrechet(const std::vector<JudgedFold>& made, const std::vector<JudgedFold>& captured);
+
+// The mean distance between motions of a class within a fold, averaged likewise.
+std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int classes);
 
 }  // namespace duet::evaluation::metrics
 

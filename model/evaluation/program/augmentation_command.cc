@@ -12,7 +12,7 @@
 #include "model/base/status_macros.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/measures.h"
-#include "model/evaluation/report/metric_tables.h"
+#include "model/evaluation/report/report.h"
 #include "model/training/augment.h"
 
 namespace duet::evaluation::program {
@@ -107,18 +107,6 @@ absl::StatusOr<std::vector<double>> Accuracies(const dataset::Dataset& dataset,
   return accuracies;
 }
 
-// A figure of each column over trials.
-template <typename Figure>
-std::vector<double> OverTrials(const std::vector<std::vector<double>>& trials, Figure figure) {
-  std::vector<double> figures;
-  for (size_t c = 0; c < trials.front().size(); ++c) {
-    std::vector<double> values;
-    for (const std::vector<double>& trial : trials) values.push_back(trial[c]);
-    figures.push_back(figure(values));
-  }
-  return figures;
-}
-
 double Deviation(const std::vector<double>& values) { return base::Summarise(values).deviation; }
 
 std::vector<report::Table> Tables(const std::vector<std::string>& classes,
@@ -140,7 +128,7 @@ std::vector<report::Table> Tables(const std::vector<std::string>& classes,
       for (size_t c = 0; c < gains[t].size(); ++c) gains[t][c] -= rows.front().trials[t][c];
     }
     tables[1].rows.push_back({row.name, report::ColumnMeans(gains)});
-    tables[1].rows.push_back({row.name + ", deviation", OverTrials(gains, Deviation)});
+    tables[1].rows.push_back({row.name + ", deviation", report::OverColumns(gains, Deviation)});
   }
   AddPrintedRows(report::PaperAugmentation(), &tables[0]);
   return tables;

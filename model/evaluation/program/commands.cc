@@ -1,5 +1,3 @@
-#include "model/evaluation/program/commands.h"
-
 #include <iostream>
 #include <memory>
 #include <string>
@@ -8,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/status_macros.h"
+#include "model/evaluation/program/experiment.h"
 
 namespace duet::evaluation::program {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "model/base/program_flags.h"
 #include "model/base/program_output.h"
-#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
 

@@ -158,7 +158,7 @@ absl::StatusOr<std::vector<FoldModel>> OpenModels(const ExperimentFlags& flags) 
     } else {
       DUET_TRY(one, torch_engine::LoadTorchSynthesizer(flags.checkpoint, options));
     }
-    models.push_back({"duet", [one](const std::string&) { return one; }});
+    models.push_back({"duet", [one](const std::string&) { return one; }, flags.asked});
   }
   for (const std::string& text : flags.runs) {
     DUET_TRY(NamedRuns runs, ParseRuns(text));
@@ -167,7 +167,8 @@ absl::StatusOr<std::vector<FoldModel>> OpenModels(const ExperimentFlags& flags) 
                        options](const std::string& subject) -> absl::StatusOr<SharedSynthesizer> {
                         DUET_TRY(const auto checkpoint, ReadRunCheckpoint(folder / subject));
                         return torch_engine::MakeTorchSynthesizer(checkpoint, options);
-                      }});
+                      },
+                      flags.asked});
   }
   return models;
 }
@@ -186,8 +187,16 @@ absl::StatusOr<std::vector<Fold>> LeaveOut(const dataset::Dataset& dataset,
 absl::StatusOr<Experiment> OpenExperiment(const ExperimentFlags& flags) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(flags.data));
   DUET_TRY(std::vector<Fold> folds, LeaveOut(dataset, flags.subjects));
-  DUET_TRY(std::vector<FoldModel> models, OpenModels(flags));
-  return Experiment{std::move(dataset), std::move(folds), std::move(models)};
+  DUET_TRY(const std::vector<FoldModel> models, OpenModels(flags));
+  Experiment experiment{std::move(dataset), std::move(folds), {}};
+  for (const std::string& start : flags.starts) {
+    for (const FoldModel& model : models) {
+      FoldModel& started = experiment.models.emplace_back(model);
+      started.asked.start = start;
+      if (start != "none") absl::StrAppend(&started.name, "+", start);
+    }
+  }
+  return experiment;
 }
 
 std::string DescribeData(const dataset::Dataset& dataset) {
@@ -208,10 +217,6 @@ report::Section BeginExperiment(const ExperimentFlags& flags, const Experiment& 
                       {"left out in turn", absl::StrJoin(subjects, ", ")},
                       {"models' answers", flags.as_served ? "as served" : "the network's own"}};
   return section;
-}
-
-std::string StartSuffix(const std::string& start) {
-  return start == "none" ? "" : absl::StrCat("+", start);
 }
 
 absl::Status CheckModelTakes(const engine::ModelDescription& model, const dataset::Dataset& dataset,
@@ -323,16 +328,16 @@ std::vector<metrics::JudgedFold> JudgeFolds(const std::vector<judge::MotionClass
 }
 
 absl::StatusOr<std::vector<FoldAnswers>> AnswerFolds(const Experiment& experiment,
-                                                     const FoldModel& model, const Asked& asked) {
+                                                     const FoldModel& model) {
   std::vector<FoldAnswers> sets;
   for (const Fold& fold : experiment.folds) {
     DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
     DUET_TRY(metrics::SampledMotions of_fold,
-             AnswerWithSamples(*synthesizer, experiment.dataset, fold.split.test, asked));
+             AnswerWithSamples(*synthesizer, experiment.dataset, fold.split.test, model.asked));
     sets.resize(of_fold.size());
     for (size_t n = 0; n < sets.size(); ++n) sets[n].push_back(std::move(of_fold[n]));
-    std::cerr << absl::StrCat(model.name, StartSuffix(asked.start), " without ", fold.subject, ": ",
-                              fold.split.test.size(), " leaders, ", sets.size(), " answers each\n");
+    std::cerr << absl::StrCat(model.name, " without ", fold.subject, ": ", fold.split.test.size(),
+                              " leaders, ", sets.size(), " answers each\n");
   }
   return sets;
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "model/base/program_flags.h"
@@ -17,15 +18,14 @@
 #include "model/dataset/dataset.h"
 #include "model/engine/label_track.h"
 #include "model/engine/synthesizer.h"
-#include "model/evaluation/judge/motion_classifier.h"
-#include "model/evaluation/metrics/judged_scores.h"
+#include "model/evaluation/judge/judge.h"
 #include "model/evaluation/metrics/scores.h"
-#include "model/evaluation/program/commands.h"
+#include "model/evaluation/report/report.h"
+
+namespace duet::evaluation::program {
 
 // What commands share: their flags, the models that a command line names, people left out of
 // training, on whom models are measured, and the answers of models to captured leaders.
-
-namespace duet::evaluation::program {
 
 // An option whose default --help shows.
 template <typename Value>
@@ -84,10 +84,12 @@ void AddAnswersFlags(ExperimentFlags* flags, CLI::App* command);
 
 using SharedSynthesizer = std::shared_ptr<const engine::Synthesizer>;
 
-// A model by its name in the tables, and its generator for the fold without a subject.
+// A model by its name in the tables, its generator for the fold without a subject, and what it is
+// asked.
 struct FoldModel {
   std::string name;
   std::function<absl::StatusOr<SharedSynthesizer>(const std::string& subject)> load;
+  Asked asked;
 };
 
 // Runs of duet-train and their name in tables: "ours=DIR", or "DIR", which is named by its last
@@ -116,7 +118,8 @@ struct Fold {
 absl::StatusOr<std::vector<Fold>> LeaveOut(const dataset::Dataset& dataset,
                                            const std::vector<std::string>& asked);
 
-// The data, folds and models that the flags name.
+// The data, folds and models that the flags name: every model once for each start, which its name
+// shows ("+root", "+pose").
 struct Experiment {
   dataset::Dataset dataset;
   std::vector<Fold> folds;
@@ -133,9 +136,6 @@ std::string DescribeData(const dataset::Dataset& dataset);
 // out, and how the models' answers are finished.
 report::Section BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
                                 const std::string& text);
-
-// The suffix of a row's name: "", "+root", "+pose".
-std::string StartSuffix(const std::string& start);
 
 // FAILED_PRECONDITION if a model's classes or joints differ from the data's, or if it does not
 // accept the start.
@@ -179,13 +179,40 @@ using FoldAnswers = std::vector<std::vector<metrics::ScoredMotion>>;
 // A model's answers, each in the class of its sequence at weight 1. Writes progress to stderr.
 // Errors: those of loading the model and of AnswerWithSamples. Shapes: returns [samples].
 absl::StatusOr<std::vector<FoldAnswers>> AnswerFolds(const Experiment& experiment,
-                                                     const FoldModel& model, const Asked& asked);
+                                                     const FoldModel& model);
 // The captured followers.
 FoldAnswers CapturedAnswers(const Experiment& experiment);
 // The results of each fold's judge. Shapes: judges and answers [folds].
 std::vector<metrics::JudgedFold> JudgeFolds(const std::vector<judge::MotionClassifier>& judges,
                                             const dataset::Dataset& dataset,
                                             const FoldAnswers& answers);
+
+// What a command measures when its flags have been parsed: the text, tables, figures and settings
+// of a section.
+using Measure = std::function<absl::StatusOr<report::Section>()>;
+
+// The commands of duet-eval. Each adds its flags to its command line.
+Measure AddFoldsCommand(CLI::App* command);
+Measure AddSamplesCommand(CLI::App* command);
+Measure AddPlausibleCommand(CLI::App* command);
+Measure AddToldApartCommand(CLI::App* command);
+Measure AddSweepCommand(CLI::App* command);
+Measure AddMixesCommand(CLI::App* command);
+Measure AddAugmentationCommand(CLI::App* command);
+Measure AddLatentCommand(CLI::App* command);
+
+// Adds all of them to `app`, each with --out, --id and --title. The one that a command line names
+// stores in `chosen` what measures, prints the section and, with --out, writes it.
+void AddCommands(CLI::App* app, std::function<absl::Status()>* chosen);
+
+// Type names of folders on a command line: a section records them instead of the folders.
+// "[NAME=]RUNS" keeps the name.
+inline constexpr char kFolder[] = "FOLDER";
+inline constexpr char kRuns[] = "[NAME=]RUNS";
+
+// The command line that was parsed: every flag that was given, in the order in which they are
+// declared.
+std::string RecordedCommand(const CLI::App& command);
 
 }  // namespace duet::evaluation::program
 

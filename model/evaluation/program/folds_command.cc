@@ -2,15 +2,19 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/base/status_macros.h"
 #include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/report/metric_tables.h"
+#include "model/evaluation/report/report.h"
+#include "model/motion/filter.h"
 
 namespace duet::evaluation::program {
 namespace {
+
+using metrics::JudgedFold;
 
 // Value of --baselines for only the models' rows.
 constexpr char kNoBaseline[] = "none";
@@ -25,37 +29,71 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Scores one answer to each leader of every fold: every row in the same folds with the same judges.
+FoldAnswers Filtered(const dataset::Dataset& dataset, FoldAnswers folds) {
+  for (std::vector<metrics::ScoredMotion>& motions : folds) {
+    for (metrics::ScoredMotion& motion : motions) {
+      const double rate = SequenceOf(dataset, motion).pair.leader.frame_rate_hz;
+      motion.follower = motion::WithoutNoise(motion.follower, rate);
+    }
+  }
+  return folds;
+}
+
+// Adds values / count to sums, which may still be empty.
+void AddShare(const std::vector<double>& values, size_t count, std::vector<double>* sums) {
+  sums->resize(values.size());
+  for (size_t i = 0; i < values.size(); ++i) (*sums)[i] += values[i] / static_cast<double>(count);
+}
+
+// Scores answers to the leaders of every fold: every row in the same folds with the same judges.
 class Scorer {
  public:
+  // `experiment` must outlive the scorer.
   static absl::StatusOr<Scorer> Create(const Experiment& experiment, bool judges) {
     Scorer scorer(experiment);
-    if (judges) {
-      DUET_TRY(scorer.judges_, TrainJudges(experiment.dataset, experiment.folds));
-    }
-    scorer.judged_captured_ =
-        JudgeFolds(scorer.judges_, experiment.dataset, CapturedAnswers(experiment));
+    if (!judges) return scorer;
+    const dataset::Dataset& dataset = experiment.dataset;
+    const FoldAnswers captured = CapturedAnswers(experiment);
+    DUET_TRY(scorer.judges_, TrainJudges(dataset, experiment.folds));
+    scorer.captured_ = JudgeFolds(scorer.judges_, dataset, captured);
+    scorer.filtered_ = JudgeFolds(scorer.judges_, dataset, Filtered(dataset, captured));
     return scorer;
   }
 
-  report::MethodFigures Score(const std::string& row, const FoldAnswers& answers) const {
-    const dataset::Dataset& dataset = experiment_->dataset;
+  // Shapes: sets [samples], answers to all leaders each.
+  report::MethodFigures Score(const std::string& row, const std::vector<FoldAnswers>& sets) const {
+    const dataset::Dataset& dataset = experiment_.dataset;
     const int classes = dataset.class_count();
-    report::MethodFigures figures{row, /*captured=*/false, ScoreByClass(dataset, Pool(answers))};
-    if (judges_.empty()) return figures;
-    const std::vector<metrics::JudgedFold> made = JudgeFolds(judges_, dataset, answers);
-    figures.by_metric[report::kFrechet] = FrechetByClass(made, judged_captured_, classes);
-    figures.by_metric[report::kAccuracy] = AccuracyByClass(made, classes);
-    figures.by_metric[report::kDiversity] = DiversityByClass(made, classes);
+    metrics::SampledMotions answers;
+    for (const FoldAnswers& set : sets) answers.push_back(Pool(set));
+    report::MethodFigures figures{row, false, ScoreByClass(dataset, Pool(answers))};
+    auto& by_metric = figures.by_metric;
+    by_metric[report::kMeanAnswerAfd] = ScoreByClass(dataset, MeanAnswers(answers))["afd"];
+    by_metric[report::kBestAnswerAfd] = ScoreByClass(dataset, BestAnswers(dataset, answers))["afd"];
+    by_metric[report::kMultimodality] = MultimodalityByClass(dataset, answers);
+    for (const FoldAnswers& set : sets) {
+      if (judges_.empty()) break;
+      const std::vector<JudgedFold> made = JudgeFolds(judges_, dataset, set),
+                                    filtered = JudgeFolds(judges_, dataset, Filtered(dataset, set));
+      const auto add = [&](const char* name, const std::vector<double>& values) {
+        AddShare(values, sets.size(), &by_metric[name]);
+      };
+      add(report::kFrechet, FrechetByClass(made, captured_, classes));
+      add(report::kPooledFrechet, {PooledFrechet(made, captured_)});
+      add(report::kFilteredFrechet, {PooledFrechet(filtered, filtered_)});
+      add(report::kAccuracy, AccuracyByClass(made, classes));
+      add(report::kDiversity, DiversityByClass(made, classes));
+      add(report::kFilteredDiversity, DiversityByClass(filtered, classes));
+    }
     return figures;
   }
 
  private:
-  explicit Scorer(const Experiment& experiment) : experiment_(&experiment) {}
+  explicit Scorer(const Experiment& experiment) : experiment_(experiment) {}
 
-  const Experiment* experiment_;
+  const Experiment& experiment_;
   std::vector<judge::MotionClassifier> judges_;  // [folds], or empty
-  std::vector<metrics::JudgedFold> judged_captured_;
+  std::vector<JudgedFold> captured_, filtered_;  // of the captured followers
 };
 
 absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experiment,
@@ -73,24 +111,19 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experi
       DUET_TRY(answers.emplace_back(),
                baselines::RunBaseline(name, experiment.dataset, fold.split));
     }
-    rows.push_back(scorer.Score(name, answers));
+    rows.push_back(scorer.Score(name, {answers}));
   }
   for (const FoldModel& model : experiment.models) {
-    for (const std::string& start : flags.starts) {
-      Asked once;
-      once.start = start;
-      const auto answers = AnswerFolds(experiment, model, once);
-      // A model without a start input has only one row.
-      if (absl::IsFailedPrecondition(answers.status()) && start != "none") {
-        std::cerr << model.name << " with " << start << ": left out: " << answers.status().message()
-                  << "\n";
-        continue;
-      }
-      DUET_RETURN_IF_ERROR(answers.status());
-      rows.push_back(scorer.Score(model.name + StartSuffix(start), answers->front()));
+    const auto answers = AnswerFolds(experiment, model);
+    // A model without a start input has only one row.
+    if (absl::IsFailedPrecondition(answers.status()) && model.asked.start != "none") {
+      std::cerr << model.name << ": left out: " << answers.status().message() << "\n";
+      continue;
     }
+    DUET_RETURN_IF_ERROR(answers.status());
+    rows.push_back(scorer.Score(model.name, *answers));
   }
-  rows.push_back(scorer.Score("captured", CapturedAnswers(experiment)));
+  rows.push_back(scorer.Score("captured", {CapturedAnswers(experiment)}));
   rows.back().captured = true;
   return rows;
 }
@@ -117,6 +150,36 @@ absl::StatusOr<report::Section> RunFolds(const FoldsFlags& flags) {
   return section;
 }
 
+absl::StatusOr<report::Section> RunSamples(const ExperimentFlags& flags) {
+  DUET_TRY(const Experiment experiment, OpenExperiment(flags));
+  DUET_TRY(const Scorer scorer, Scorer::Create(experiment, true));
+  std::vector<report::MethodFigures> rows = {
+      scorer.Score("captured", {CapturedAnswers(experiment)})};
+  std::vector<FoldAnswers> others(static_cast<size_t>(flags.asked.samples));
+  for (size_t n = 0; n < others.size(); ++n) {
+    for (const Fold& fold : experiment.folds) {
+      DUET_TRY(others[n].emplace_back(), baselines::AnswerWithOtherPeople(
+                                             experiment.dataset, fold.split, flags.asked.seed + n));
+    }
+  }
+  rows.push_back(scorer.Score("other people", others));
+  for (const FoldModel& model : experiment.models) {
+    DUET_TRY(const std::vector<FoldAnswers> sets, AnswerFolds(experiment, model));
+    rows.push_back(scorer.Score(model.name, sets));
+  }
+  report::Section section = BeginExperiment(
+      flags, experiment,
+      "A model that samples answers every leader of every left-out subject several times, each "
+      "time with another seed; other models answer once. The average frame distance rewards the "
+      "mean of all plausible motions, so the table gives it for one answer, for the mean of all "
+      "answers and for the best. Speed, range, diversity and lean should be close to the captured "
+      "followers' row, neither below nor above it. +pose: the input includes the follower's first "
+      "pose. Other people: captured followers of training clips of the same class, drawn at "
+      "random, who answered another leader.");
+  section.tables = {report::SampleSummary(rows)};
+  return section;
+}
+
 }  // namespace
 
 Measure AddFoldsCommand(CLI::App* command) {
@@ -134,6 +197,13 @@ Measure AddFoldsCommand(CLI::App* command) {
   AddNames("--metrics", &flags->metrics, metrics, "tables to print", command);
   command->add_flag("--printed", flags->printed, "add the rows that the paper prints");
   return [flags] { return RunFolds(*flags); };
+}
+
+Measure AddSamplesCommand(CLI::App* command) {
+  const auto flags = std::make_shared<ExperimentFlags>();
+  flags->asked.samples = 10;
+  AddAnswersFlags(flags.get(), command);
+  return [flags] { return RunSamples(*flags); };
 }
 
 }  // namespace duet::evaluation::program

@@ -8,7 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
-#include "model/evaluation/judge/latent.h"
+#include "model/evaluation/judge/judge.h"
 #include "model/evaluation/program/experiment.h"
 
 namespace duet::evaluation::program {
@@ -17,10 +17,6 @@ namespace {
 // Of the map that make_report.py draws: the effective number of neighbours, lowered for few clips,
 // and the seed of its start.
 constexpr int kPerplexity = 30, kMapSeed = 1;
-
-struct LatentFlags : ExperimentFlags {
-  std::string clips = "test";
-};
 
 std::string FigureName(std::string text) {
   for (char& c : text) {
@@ -51,7 +47,7 @@ absl::Status AddSpace(const dataset::Dataset& dataset, const std::string& name,
   return absl::OkStatus();
 }
 
-absl::StatusOr<report::Section> RunLatent(const LatentFlags& flags) {
+absl::StatusOr<report::Section> RunLatent(const ExperimentFlags& flags) {
   ExperimentFlags without_models = flags;
   without_models.runs.clear();
   DUET_TRY(Experiment experiment, OpenExperiment(without_models));
@@ -66,15 +62,12 @@ absl::StatusOr<report::Section> RunLatent(const LatentFlags& flags) {
       "it infers from the leader only.");
   section.tables = {{"Share of clips whose nearest neighbour is of their class", {"in the space"}}};
   section.tables.front().decimals = 3;
+  const std::vector<int> clips = dataset::AllSequences(experiment.dataset);
   for (const std::string& text : flags.runs) {
     DUET_TRY(const NamedRuns runs, ParseRuns(text));
     for (const Fold& fold : experiment.folds) {
       DUET_TRY(const checkpoint::Checkpoint checkpoint,
                ReadRunCheckpoint(runs.folder / fold.subject));
-      std::vector<int> clips = flags.clips == "train" ? fold.split.train : fold.split.test;
-      if (flags.clips == "all") {
-        clips.insert(clips.end(), fold.split.train.begin(), fold.split.train.end());
-      }
       DUET_RETURN_IF_ERROR(AddSpace(experiment.dataset, absl::StrCat(runs.name, ", ", fold.subject),
                                     checkpoint, clips, true, &section));
       // A model that reads labels is measured a second time without the label, which by itself
@@ -92,7 +85,7 @@ absl::StatusOr<report::Section> RunLatent(const LatentFlags& flags) {
 }  // namespace
 
 Measure AddLatentCommand(CLI::App* command) {
-  const auto flags = std::make_shared<LatentFlags>();
+  const auto flags = std::make_shared<ExperimentFlags>();
   AddExperimentFlags(flags.get(), command);
   command
       ->add_option("--runs", flags->runs,
@@ -101,8 +94,6 @@ Measure AddLatentCommand(CLI::App* command) {
       ->type_name(kRuns)
       ->required()
       ->allow_extra_args(false);
-  AddOption("--clips", &flags->clips, "clips of the fold to show", command)
-      ->check(CLI::IsMember({"test", "train", "all"}));
   return [flags] { return RunLatent(*flags); };
 }
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/body/limbs.h"
+#include "model/body/grade.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/judge/motion_classifier.h"
+#include "model/evaluation/judge/judge.h"
 #include "model/evaluation/metrics/scores.h"
-#include "model/evaluation/report/section.h"
+#include "model/evaluation/report/report.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -101,27 +101,15 @@ motion::Vec3 AwayFromLeader(const dataset::Sequence& sequence, int root);
 
 // How a follower meets a leader, in numbers: how near it comes, what its hands do, how it recoils.
 // Every feature is an extreme over the clip, and larger for more of it; therefore a mix can have
-// the features of two classes at different times. Metres, and degrees for leaning.
-class MeetingGeometry {
- public:
-  // Requires a skeleton that Validate accepts.
-  explicit MeetingGeometry(const motion::Skeleton& skeleton);
-
-  // Whether the skeleton has hips, two arms, a chest and a head.
-  bool possible() const;
-  const body::Body& body() const { return body_; }
-
-  static const std::vector<std::string>& Features();
-
-  // Requires possible(), and a follower of as many frames as the leader. Shapes: returns
-  // [features].
-  std::vector<double> Measure(const dataset::Sequence& sequence,
-                              const motion::Poses& follower) const;
-
- private:
-  motion::Skeleton skeleton_;
-  body::Body body_;
-};
+// the features of two classes at different times. Metres, and degrees for leaning. Requires
+// CanMeasureMeeting, and a follower of as many frames as the leader. Shapes: returns
+// [MeetingFeatures].
+std::vector<double> MeasureMeeting(const motion::Skeleton& skeleton,
+                                   const dataset::Sequence& sequence,
+                                   const motion::Poses& follower);
+const std::vector<std::string>& MeetingFeatures();
+// Whether the skeleton has hips, two arms, a chest and a head.
+bool CanMeasureMeeting(const motion::Skeleton& skeleton);
 
 // The features of captured followers, by class. Shapes: [classes][features].
 struct ClassGeometry {
@@ -131,8 +119,7 @@ struct ClassGeometry {
   // spread; otherwise 0. A feature that exceeds it belongs to the class's own geometry.
   double Own(int of_class, int other, size_t feature) const;
 };
-ClassGeometry MeasureClasses(const MeetingGeometry& geometry, const dataset::Dataset& dataset,
-                             const std::vector<int>& sequences);
+ClassGeometry MeasureClasses(const dataset::Dataset& dataset, const std::vector<int>& sequences);
 
 // An answer to two classes at once, and the answers to each of them by itself. All have one seed
 // and one start, so that only the labels differ.
@@ -140,11 +127,11 @@ struct MixedAnswer {
   int leader = 0;
   int fold = 0;            // of the captures that say what belongs to a class
   int own = 0, other = 0;  // the class of the leader's interaction, and the one that is added
-  // Of the mix and of the two single answers. Shapes: [features] of MeetingGeometry.
+  // Of the mix and of the two single answers. Shapes: [MeetingFeatures].
   std::vector<double> mixed = {}, own_alone = {}, other_alone = {};
-  std::vector<float> probabilities = {};             // the judge's of the mix [classes]
-  double deviation = 0;                              // Deviation's
-  double twisted = 0, overlapping = 0, skating = 0;  // shares of frames (body::Grade)
+  std::vector<float> probabilities = {};  // the judge's of the mix [classes]
+  double deviation = 0;                   // Deviation's
+  body::Grade grade = {};
 };
 
 // The distance of a mix from the average of both single answers, over that of either single answer

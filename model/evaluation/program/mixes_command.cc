@@ -19,45 +19,36 @@ namespace {
 
 using motion::Poses;
 
-// Values of --measures.
-constexpr char kMixes[] = "mixes", kReaction[] = "reaction";
-
 struct MixesFlags : ExperimentFlags {
-  std::vector<std::string> measures = {kMixes, kReaction};
   std::vector<std::string> reaction_classes;  // empty: all
   int leaders = 0;                            // of each class in a fold; 0: all
-
-  bool Measures(const std::string& name) const {
-    return std::count(measures.begin(), measures.end(), name) > 0;
-  }
 };
 
-// What mixes of a data set are measured with. Shapes: [folds].
+// What judges mixes of a data set. Shapes: [folds].
 struct Meters {
-  MeetingGeometry geometry;
-  std::vector<ClassGeometry> classes = {};  // of the training captures
-  std::vector<judge::MotionClassifier> judges = {};
+  std::vector<ClassGeometry> classes;  // of the training captures
+  std::vector<judge::MotionClassifier> judges;
 };
 
-absl::StatusOr<Meters> OpenMeters(const Experiment& experiment, const MixesFlags& flags) {
+absl::StatusOr<Meters> OpenMeters(const Experiment& experiment) {
   const dataset::Dataset& dataset = experiment.dataset;
-  Meters meters{MeetingGeometry(dataset.skeleton)};
-  if (!meters.geometry.possible() ||
-      !body::PairMeter::CanMeasure(dataset.skeleton, meters.geometry.body())) {
+  if (!CanMeasureMeeting(dataset.skeleton) ||
+      !body::PairMeter::CanMeasure(dataset.skeleton, body::FindBody(dataset.skeleton))) {
     return absl::InvalidArgumentError(
         "--data: expected a skeleton with hips, feet, a chest, a head and two named arms");
   }
-  if (!flags.Measures(kMixes)) return meters;
+  Meters meters;
   for (const Fold& fold : experiment.folds) {
-    meters.classes.push_back(MeasureClasses(meters.geometry, dataset, fold.split.train));
+    meters.classes.push_back(MeasureClasses(dataset, fold.split.train));
   }
   DUET_TRY(meters.judges, TrainJudges(dataset, experiment.folds));
   return meters;
 }
 
-body::Grade GradeOf(const dataset::Dataset& dataset, const body::Body& body,
-                    const motion::Clip& leader, const Poses& follower) {
-  body::PairMeter meter(dataset.skeleton, body, leader.frame_rate_hz);
+body::Grade GradeOf(const motion::Skeleton& skeleton, const motion::Clip& leader,
+                    const Poses& follower) {
+  const body::Body body = body::FindBody(skeleton);
+  body::PairMeter meter(skeleton, body, leader.frame_rate_hz);
   body::GradeSum sum;
   for (int t = 0; t < follower.frame_count(); ++t) sum.Add(meter.Add(leader.poses[t], follower[t]));
   return sum.Get();
@@ -91,16 +82,12 @@ absl::Status MixWith(const dataset::Dataset& dataset, const Meters& meters, int 
   const Poses &own_alone = answers[0], &other_alone = answers[3], &avoiding = answers[4];
   for (size_t v = 0; v < measured->mixes.size(); ++v) {
     MixedAnswer answer{leader, fold, own, other};
-    answer.mixed = meters.geometry.Measure(sequence, answers[v]);
-    answer.own_alone = meters.geometry.Measure(sequence, own_alone);
-    answer.other_alone = meters.geometry.Measure(sequence, other_alone);
+    answer.mixed = MeasureMeeting(dataset.skeleton, sequence, answers[v]);
+    answer.own_alone = MeasureMeeting(dataset.skeleton, sequence, own_alone);
+    answer.other_alone = MeasureMeeting(dataset.skeleton, sequence, other_alone);
     answer.probabilities = judged.probabilities[v];
     answer.deviation = Deviation(answers[v], own_alone, other_alone);
-    const body::Grade grade =
-        GradeOf(dataset, meters.geometry.body(), sequence.pair.leader, answers[v]);
-    answer.twisted = grade.twisted;
-    answer.overlapping = grade.overlapping;
-    answer.skating = grade.skating;
+    answer.grade = GradeOf(dataset.skeleton, sequence.pair.leader, answers[v]);
     measured->mixes[v].second.push_back(std::move(answer));
   }
   const auto distance = [&](const Poses& follower) {
@@ -162,9 +149,10 @@ std::vector<int> ChooseLeaders(const dataset::Dataset& dataset, const std::vecto
 
 // The tables of one model with one start.
 absl::Status AddTables(const Experiment& experiment, const MixesFlags& flags, const Meters& meters,
-                       const FoldModel& model, const Asked& asked, report::Section* section) {
+                       const FoldModel& model, report::Section* section) {
   const dataset::Dataset& dataset = experiment.dataset;
-  const std::string name = model.name + StartSuffix(asked.start);
+  const std::string& name = model.name;
+  const Asked& asked = model.asked;
   Measured measured;
   std::vector<bool> contact;  // of each class
   for (size_t f = 0; f < experiment.folds.size(); ++f) {
@@ -179,15 +167,15 @@ absl::Status AddTables(const Experiment& experiment, const MixesFlags& flags, co
     }
     std::vector<int> reacting;
     for (const int leader : leaders) {
+      const std::string& of_leader =
+          dataset.classes[static_cast<size_t>(metrics::ClassesOf(dataset, {leader})[0])];
       const auto& some = flags.reaction_classes;
-      const int own = dataset.sequences[static_cast<size_t>(leader)].interaction_class;
-      const std::string& of_leader = dataset.classes[static_cast<size_t>(own)];
       if (some.empty() || std::count(some.begin(), some.end(), of_leader) > 0) {
         reacting.push_back(leader);
       }
     }
     for (int n = 0; n < samples; ++n) {
-      for (const int leader : flags.Measures(kMixes) ? leaders : std::vector<int>()) {
+      for (const int leader : leaders) {
         const int own = dataset.sequences[static_cast<size_t>(leader)].interaction_class;
         for (int other = 0; other < dataset.class_count(); ++other) {
           if (other == own) continue;
@@ -195,47 +183,37 @@ absl::Status AddTables(const Experiment& experiment, const MixesFlags& flags, co
                                        leader, other, n, &measured));
         }
       }
-      if (!flags.Measures(kReaction)) continue;
       DUET_RETURN_IF_ERROR(React(dataset, *synthesizer, asked, reacting, n, &measured.reactions));
     }
     std::cerr << absl::StrCat(name, " without ", fold.subject, ": ", leaders.size(), " leaders\n");
   }
-  if (flags.Measures(kMixes)) {
-    const auto is_contact = [&](int c) { return contact[static_cast<size_t>(c)]; };
-    std::vector<MixVariant> two_kinds = measured.mixes;
-    for (auto& [variant, answers] : two_kinds) {
-      answers.erase(std::remove_if(answers.begin(), answers.end(),
-                                   [&](const MixedAnswer& answer) {
-                                     return is_contact(answer.own) == is_contact(answer.other);
-                                   }),
-                    answers.end());
-    }
-    section->tables.push_back(MixTable(name + ": mixes", meters.classes, measured.mixes));
-    section->tables.push_back(
-        MixTable(name + ": mixes of contact with other classes", meters.classes, two_kinds));
-    section->tables.push_back(AvoidTable(name + ": negatives", measured.avoiding));
+  std::vector<MixVariant> two_kinds = measured.mixes;
+  for (auto& [variant, answers] : two_kinds) {
+    const auto one_kind = [&](const MixedAnswer& answer) {
+      return contact[static_cast<size_t>(answer.own)] == contact[static_cast<size_t>(answer.other)];
+    };
+    answers.erase(std::remove_if(answers.begin(), answers.end(), one_kind), answers.end());
   }
-  if (flags.Measures(kReaction)) {
-    section->tables.push_back(ReactionTable(name + ": reaction", measured.reactions));
-  }
+  section->tables.insert(
+      section->tables.end(),
+      {MixTable(name + ": mixes", meters.classes, measured.mixes),
+       MixTable(name + ": mixes of contact with other classes", meters.classes, two_kinds),
+       AvoidTable(name + ": negatives", measured.avoiding),
+       ReactionTable(name + ": reaction", measured.reactions)});
   return absl::OkStatus();
 }
 
 absl::StatusOr<report::Section> RunMixes(const MixesFlags& flags) {
   DUET_TRY(const Experiment experiment, OpenExperiment(flags));
-  DUET_TRY(const Meters meters, OpenMeters(experiment, flags));
+  DUET_TRY(const Meters meters, OpenMeters(experiment));
   report::Section section = BeginExperiment(
       flags, experiment,
       "The leaders of every left-out subject, answered in mixes of their own class with each other "
       "class, with each other class at -1, and in their own class with the leader held still "
       "before and after the clip. All answers to one leader have one seed; every leader has its "
       "own. +pose: the input includes the follower's first pose.");
-  for (const std::string& start : flags.starts) {
-    for (const FoldModel& model : experiment.models) {
-      Asked asked = flags.asked;
-      asked.start = start;
-      DUET_RETURN_IF_ERROR(AddTables(experiment, flags, meters, model, asked, &section));
-    }
+  for (const FoldModel& model : experiment.models) {
+    DUET_RETURN_IF_ERROR(AddTables(experiment, flags, meters, model, &section));
   }
   return section;
 }
@@ -247,7 +225,6 @@ Measure AddMixesCommand(CLI::App* command) {
   AddAnswersFlags(flags.get(), command);
   AddNumber("--leaders", &flags->leaders, 0, 1000,
             "leaders of each class in a fold; 0: all of the left-out subject", command);
-  AddNames("--measures", &flags->measures, {kMixes, kReaction}, "what to measure", command);
   command
       ->add_option("--reaction-classes", flags->reaction_classes,
                    "classes of the reaction (default: all)")

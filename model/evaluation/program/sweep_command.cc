@@ -67,31 +67,26 @@ absl::StatusOr<report::Section> RunSweep(const ExperimentFlags& flags) {
       "without the left-out subject, gives the probability of each class. At weight 0 of its own "
       "class, the network has no label and infers the motion from the leader.");
   for (const FoldModel& model : experiment.models) {
-    for (const std::string& start : flags.starts) {
-      Asked asked = flags.asked;
-      asked.start = start;
-      std::vector<SweepCurve> curves;
-      for (size_t f = 0; f < experiment.folds.size(); ++f) {
-        const Fold& fold = experiment.folds[f];
-        DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
-        const engine::ModelDescription& description = synthesizer->description();
-        DUET_RETURN_IF_ERROR(CheckModelTakes(description, dataset, start));
-        // A model that does not sample has the same answer for every seed.
-        const int samples = description.samples ? asked.samples : 1;
-        for (const int index : fold.split.test) {
-          for (int n = 0; n < samples; ++n) {
-            DUET_RETURN_IF_ERROR(SweepLeader(dataset, *synthesizer, judges[f], index,
-                                             asked.seed + static_cast<uint64_t>(n), asked,
-                                             &curves));
-          }
+    std::vector<SweepCurve> curves;
+    for (size_t f = 0; f < experiment.folds.size(); ++f) {
+      const Fold& fold = experiment.folds[f];
+      DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
+      const engine::ModelDescription& description = synthesizer->description();
+      DUET_RETURN_IF_ERROR(CheckModelTakes(description, dataset, model.asked.start));
+      // A model that does not sample has the same answer for every seed.
+      const int samples = description.samples ? model.asked.samples : 1;
+      for (const int index : fold.split.test) {
+        for (int n = 0; n < samples; ++n) {
+          DUET_RETURN_IF_ERROR(SweepLeader(dataset, *synthesizer, judges[f], index,
+                                           model.asked.seed + static_cast<uint64_t>(n), model.asked,
+                                           &curves));
         }
-        std::cerr << "sweep" << StartSuffix(start) << " without " << fold.subject << ": "
-                  << fold.split.test.size() << " leaders\n";
       }
-      for (report::Table& table :
-           SweepTables(model.name + StartSuffix(start), dataset.classes, curves)) {
-        section.tables.push_back(std::move(table));
-      }
+      std::cerr << model.name << " without " << fold.subject << ": " << fold.split.test.size()
+                << " leaders\n";
+    }
+    for (report::Table& table : SweepTables(model.name, dataset.classes, curves)) {
+      section.tables.push_back(std::move(table));
     }
   }
   return section;

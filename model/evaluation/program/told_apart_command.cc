@@ -45,19 +45,19 @@ dataset::Dataset PairsToTell(const dataset::Dataset& dataset,
 // The accuracies of one model. Shapes: returns [classifier seeds][folds].
 absl::StatusOr<std::vector<std::vector<double>>> Accuracies(const Experiment& experiment,
                                                             const FoldModel& model,
-                                                            const Asked& asked,
                                                             const std::vector<uint64_t>& seeds) {
   std::vector<std::vector<double>> accuracies(seeds.size());
   for (const Fold& fold : experiment.folds) {
     const dataset::Dataset& dataset = experiment.dataset;
     DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
-    DUET_TRY(auto training, AnswerWithSamples(*synthesizer, dataset, fold.split.train, asked));
-    DUET_TRY(auto test, AnswerWithSamples(*synthesizer, dataset, fold.split.test, asked));
+    DUET_TRY(auto training,
+             AnswerWithSamples(*synthesizer, dataset, fold.split.train, model.asked));
+    DUET_TRY(auto test, AnswerWithSamples(*synthesizer, dataset, fold.split.test, model.asked));
     for (size_t i = 0; i < seeds.size(); ++i) {
       DUET_TRY(const double accuracy,
                ToldApart(dataset, training.front(), test.front(), ToldApartOptions(seeds[i])));
-      std::cerr << absl::StrFormat("%s%s without %s, classifier %d: %.3f\n", model.name,
-                                   StartSuffix(asked.start), fold.subject, seeds[i], accuracy);
+      std::cerr << absl::StrFormat("%s without %s, classifier %d: %.3f\n", model.name, fold.subject,
+                                   seeds[i], accuracy);
       accuracies[i].push_back(accuracy);
     }
   }
@@ -80,17 +80,13 @@ absl::StatusOr<report::Section> RunToldApart(const ToldApartFlags& flags) {
   table.notes = {
       "0.5: cannot be told apart; 1: always. A column is a left-out person; spread: the standard "
       "deviation of the mean over the classifiers' seeds."};
-  for (const std::string& start : flags.starts) {
-    for (const FoldModel& model : experiment.models) {
-      Asked asked = flags.asked;
-      asked.start = start;
-      DUET_TRY(const auto accuracies, Accuracies(experiment, model, asked, flags.seeds));
-      std::vector<double> values = report::ColumnMeans(accuracies), means;
-      for (const std::vector<double>& of_folds : accuracies) means.push_back(base::Mean(of_folds));
-      const base::MeanAndDeviation of_seeds = base::Summarise(means);
-      values.insert(values.end(), {of_seeds.mean, of_seeds.deviation});
-      table.rows.push_back({model.name + StartSuffix(start), std::move(values)});
-    }
+  for (const FoldModel& model : experiment.models) {
+    DUET_TRY(const auto accuracies, Accuracies(experiment, model, flags.seeds));
+    std::vector<double> values = report::ColumnMeans(accuracies), means;
+    for (const std::vector<double>& of_folds : accuracies) means.push_back(base::Mean(of_folds));
+    const base::MeanAndDeviation of_seeds = base::Summarise(means);
+    values.insert(values.end(), {of_seeds.mean, of_seeds.deviation});
+    table.rows.push_back({model.name, std::move(values)});
   }
   return section;
 }

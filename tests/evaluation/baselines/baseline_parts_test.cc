@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "model/evaluation/baselines/class_models.h"
+#include "model/evaluation/baselines/baselines.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
 
@@ -103,7 +103,8 @@ TEST(MotionMatrixTest, StandardisationIsInvertible) {
   const dataset::Sequence& sequence = dataset.sequences[2];
   const StandardPair pair = StandardiseSequence(dataset.skeleton, sequence);
   const motion::Poses world =
-      BaselineStandardisation(dataset.skeleton, sequence).Invert(FromRows(pair.follower));
+      metrics::StandardOf(dataset.skeleton, sequence, motion::StandardOrigin::kEveryFrame)
+          .Invert(FromRows(pair.follower));
   ASSERT_EQ(world.frame_count(), sequence.pair.follower.frame_count());
   for (int t = 0; t < world.frame_count(); ++t) {
     for (int j = 0; j < world.joint_count(); ++j) {

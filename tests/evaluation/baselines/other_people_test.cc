@@ -5,7 +5,6 @@
 #include <cstdlib>
 
 #include "model/evaluation/baselines/baselines.h"
-#include "model/evaluation/baselines/class_models.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
 
@@ -19,7 +18,7 @@ constexpr auto kFirstFrame = motion::StandardOrigin::kFirstFrame;
 // How a follower stands to its leader's first frame, wherever in the world that is.
 Rows Seen(const dataset::Dataset& dataset, int index, const motion::Poses& follower) {
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-  return ToRows(BaselineStandardisation(dataset.skeleton, sequence, kFirstFrame).Apply(follower));
+  return ToRows(metrics::StandardOf(dataset.skeleton, sequence, kFirstFrame).Apply(follower));
 }
 
 bool Alike(const Rows& a, const Rows& b) {

@@ -1,10 +1,9 @@
-#include "model/evaluation/judge/latent.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "model/evaluation/judge/judge.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/architectures.h"
 #include "tests/support/matchers.h"

@@ -1,10 +1,9 @@
-#include "model/evaluation/judge/motion_classifier.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "model/evaluation/judge/judge.h"
 #include "model/motion/vec3.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"

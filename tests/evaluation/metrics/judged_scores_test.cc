@@ -1,5 +1,3 @@
-#include "model/evaluation/metrics/judged_scores.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "model/evaluation/metrics/scores.h"
 #include "tests/support/matchers.h"
 
 namespace duet::evaluation::metrics {

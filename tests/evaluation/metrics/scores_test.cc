@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "model/evaluation/metrics/judged_scores.h"
 #include "model/motion/coordinates.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"

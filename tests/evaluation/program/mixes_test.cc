@@ -51,15 +51,15 @@ Poses Follower(double metres = 0) {
 }
 
 double Feature(const std::string& name, const Poses& follower) {
-  const std::vector<std::string>& names = MeetingGeometry::Features();
+  const std::vector<std::string>& names = MeetingFeatures();
   const auto found = std::find(names.begin(), names.end(), name);
   EXPECT_NE(found, names.end()) << name;
   dataset::Sequence sequence;
   sequence.pair.leader.frame_rate_hz = kRate;
   sequence.pair.leader.poses = Leader();
   sequence.pair.follower.poses = Follower();
-  return MeetingGeometry(motion::SbuSkeleton())
-      .Measure(sequence, follower)[static_cast<size_t>(found - names.begin())];
+  return MeasureMeeting(motion::SbuSkeleton(), sequence,
+                        follower)[static_cast<size_t>(found - names.begin())];
 }
 
 TEST(MeetingGeometryTest, FeaturesGrowWithWhatTheyName) {
@@ -94,11 +94,10 @@ TEST(MeetingGeometryTest, ClassOwnsWhatExceedsTheSpread) {
 
 TEST(MeetingGeometryTest, MadeUpClassesDifferInTheStepBack) {
   const dataset::Dataset dataset = test::MadeUpPairs(4);
-  const MeetingGeometry geometry(dataset.skeleton);
-  ASSERT_TRUE(geometry.possible());
-  const ClassGeometry classes = MeasureClasses(geometry, dataset, AllSequences(dataset));
+  ASSERT_TRUE(CanMeasureMeeting(dataset.skeleton));
+  const ClassGeometry classes = MeasureClasses(dataset, AllSequences(dataset));
   ASSERT_EQ(classes.means.size(), 2u);
-  const auto& names = MeetingGeometry::Features();
+  const auto& names = MeetingFeatures();
   const auto retreats =
       static_cast<size_t>(std::find(names.begin(), names.end(), "root retreats") - names.begin());
   EXPECT_GT(classes.Own(1, 0, retreats), 0.1);

@@ -1,3 +1,5 @@
+#include "model/evaluation/report/report.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,8 +9,6 @@
 #include <set>
 
 #include "model/evaluation/metrics/scores.h"
-#include "model/evaluation/report/metric_tables.h"
-#include "model/evaluation/report/section.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -30,24 +30,14 @@ Table Example() {
   return table;
 }
 
-TEST(TableTest, PlainTextAlignsAndMarksTheBest) {
+TEST(TableTest, PlainTextAligns) {
   EXPECT_EQ(ToPlainText(Example()),
             "Errors | all\n"
-            "          kick  punch\n"
-            "ours     *0.50  *0.33\n"
-            "a, \"b\"   *0.50      -\n"
-            "printed   0.10   0.20\n"
+            "         kick  punch\n"
+            "ours     0.50   0.33\n"
+            "a, \"b\"   0.50      -\n"
+            "printed  0.10   0.20\n"
             "  raw unit\n");
-}
-
-TEST(TableTest, HighestAndNoneCanBeBest) {
-  Table table = Example();
-  table.best = Best::kHighest;
-  table.decimals = 3;
-  EXPECT_THAT(ToPlainText(table), HasSubstr("*0.504"));
-  EXPECT_THAT(ToPlainText(table), testing::Not(HasSubstr("*0.500")));
-  table.best = Best::kNone;
-  EXPECT_THAT(ToPlainText(table), testing::Not(HasSubstr("*")));
 }
 
 TEST(TableTest, MeanColumnIsMissingWhereAFigureIs) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/experiment.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::test {

@@ -1,14 +1,59 @@
-#include "model/evaluation/report/metric_tables.h"
+#include "model/evaluation/report/report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "model/base/file.h"
 #include "model/base/statistics.h"
 
 namespace duet::evaluation::report {
 namespace {
+
+using nlohmann::ordered_json;
+
+std::string Rounded(double value, int decimals) {
+  return std::isnan(value) ? "-" : absl::StrFormat("%.*f", decimals, value);
+}
+
+constexpr const char* kBestNames[] = {"none", "lowest", "highest"};  // as in Best
+
+// NaN becomes null.
+ordered_json ToJson(const Table& table) {
+  ordered_json rows = ordered_json::array();
+  for (const TableRow& row : table.rows) {
+    rows.push_back({{"name", row.name}, {"printed", row.printed}, {"values", row.values}});
+  }
+  return {{"title", table.title},       {"columns", table.columns},
+          {"rows", std::move(rows)},    {"notes", table.notes},
+          {"decimals", table.decimals}, {"best", kBestNames[static_cast<size_t>(table.best)]}};
+}
+
+ordered_json ToJson(const Section& section) {
+  ordered_json tables = ordered_json::array(), figures = tables, settings = tables;
+  for (const Table& table : section.tables) tables.push_back(ToJson(table));
+  for (const Figure& figure : section.figures) {
+    figures.push_back({{"name", figure.name}, {"caption", figure.caption}, {"plot", figure.plot}});
+  }
+  for (const auto& [name, value] : section.settings) {
+    settings.push_back({{"name", name}, {"value", value}});
+  }
+  return {{"format_version", 1},
+          {"id", section.id},
+          {"title", section.title},
+          {"text", section.text},
+          {"tables", std::move(tables)},
+          {"figures", std::move(figures)},
+          {"settings", std::move(settings)},
+          {"command", section.command},
+          {"date", absl::FormatTime("%Y-%m-%d", absl::Now(), absl::UTCTimeZone())}};
+}
 
 void AddNotes(const MetricStyle& style, Table* table) {
   if (style.name == kFrechet || style.name == kDiversity) {
@@ -71,6 +116,46 @@ Table Printed(const char* title, std::vector<TableRow> rows, const char* note) {
 }
 
 }  // namespace
+
+std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
+  return OverColumns(rows, base::Mean);
+}
+
+void AddMeanColumn(Table* table) {
+  table->columns.push_back("mean");
+  for (TableRow& row : table->rows) row.values.push_back(base::Summarise(row.values).mean);
+}
+
+std::string ToPlainText(const Table& table) {
+  std::vector<std::vector<std::string>> lines = {{""}};
+  lines[0].insert(lines[0].end(), table.columns.begin(), table.columns.end());
+  for (const TableRow& row : table.rows) {
+    lines.push_back({row.name});
+    for (const double value : row.values) lines.back().push_back(Rounded(value, table.decimals));
+  }
+  std::vector<size_t> widths(lines[0].size());
+  for (const std::vector<std::string>& line : lines) {
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  }
+  std::string text = table.title + '\n';
+  for (const std::vector<std::string>& line : lines) {
+    text += absl::StrFormat("%-*s", static_cast<int>(widths[0]), line[0]);
+    for (size_t i = 1; i < line.size(); ++i) {
+      text += absl::StrFormat("  %*s", static_cast<int>(widths[i]), line[i]);
+    }
+    text += '\n';
+  }
+  for (const std::string& note : table.notes) text += "  " + note + '\n';
+  return text;
+}
+
+absl::Status WriteSection(const Section& section, const std::filesystem::path& folder) {
+  std::error_code error;  // base::WriteFile reports a folder that cannot be made
+  std::filesystem::create_directories(folder, error);
+  const std::string text =
+      ToJson(section).dump(1, ' ', false, ordered_json::error_handler_t::replace);
+  return base::WriteFile(folder / (section.id + ".json"), text + '\n');
+}
 
 const std::vector<MetricStyle>& MetricStyles() {
   constexpr Best kLow = Best::kLowest, kHigh = Best::kHighest, kNone = Best::kNone;

@@ -1,38 +1,29 @@
-#include "model/evaluation/judge/motion_classifier.h"
+#include "model/evaluation/judge/judge.h"
+
+#include <torch/torch.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
-#include "model/motion/standardise.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"
+#include "model/network/generator.h"
+#include "model/network/parameters.h"
+#include "model/network/recurrent.h"
 #include "model/training/augment.h"
 #include "model/training/optimiser.h"
+#include "model/training/sampler.h"
 
 namespace duet::evaluation::judge {
-
-struct MotionClassifier::Model {
-  std::vector<network::Discriminator> members;
-  Sees sees = Sees::kFollower;
-};
-
 namespace {
 
 // Motions per batch outside training: bounds memory and the padding of short motions.
 constexpr size_t kTestBatch = 64;
 
 using motion::StandardOrigin;
-
-motion::Standardisation Standard(const motion::Skeleton& skeleton, const motion::Poses& leader,
-                                 const std::optional<motion::Vec3>& partner_direction,
-                                 StandardOrigin origin) {
-  if (partner_direction) return {skeleton, leader, FacingYaw(*partner_direction), origin};
-  return {skeleton, leader, motion::YawDirection::kRemove, origin};
-}
 
 // Writes the positions relative to the root, from column `first` on.
 void PutAboutRoot(const motion::Poses& poses, int root, int first, motion::Poses* input) {
@@ -64,14 +55,11 @@ constexpr int InputParts(Sees sees) { return sees == Sees::kBoth ? 5 : 3; }
 motion::Poses ClassifierInput(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                               Sees sees) {
   const motion::ClipPair& pair = sequence.pair;
-  const std::optional<motion::Vec3>& partner_direction = sequence.partner_direction;
   const motion::Poses& follower = pair.follower.poses;
   const motion::Poses& leader = pair.leader.poses;
   const double rate = pair.follower.frame_rate_hz;
-  const auto every_frame =
-      Standard(skeleton, leader, partner_direction, StandardOrigin::kEveryFrame);
-  const auto first_frame =
-      Standard(skeleton, leader, partner_direction, StandardOrigin::kFirstFrame);
+  const auto every_frame = metrics::StandardOf(skeleton, sequence, StandardOrigin::kEveryFrame);
+  const auto first_frame = metrics::StandardOf(skeleton, sequence, StandardOrigin::kFirstFrame);
   const motion::Poses from_leader = every_frame.Apply(follower);
   const int frames = from_leader.frame_count(), joints = skeleton.joint_count();
   motion::Poses input(frames, InputParts(sees) * joints);
@@ -220,6 +208,11 @@ absl::Status CheckMotions(const dataset::Dataset& dataset,
 
 }  // namespace
 
+struct MotionClassifier::Model {
+  std::vector<network::Discriminator> members;
+  Sees sees = Sees::kFollower;
+};
+
 absl::StatusOr<MotionClassifier> MotionClassifier::Train(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions,
     const MotionClassifierOptions& options) {
@@ -253,6 +246,45 @@ metrics::JudgedFold MotionClassifier::Judge(
     network::AppendRows(torch::cat(features, 1), &judged.features);
   }
   return judged;
+}
+
+absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint& checkpoint,
+                                                   const dataset::Dataset& dataset,
+                                                   const std::vector<int>& sequences,
+                                                   bool labelled) {
+  constexpr size_t kBatch = 64;  // bounds memory
+  const checkpoint::Manifest& manifest = checkpoint.manifest;
+  if (!std::holds_alternative<checkpoint::PaperArchitecture>(manifest.architecture) ||
+      manifest.model.classes != dataset.classes ||
+      manifest.model.skeleton.joint_names != dataset.skeleton.joint_names) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("model ", manifest.model.name,
+                     ": expected the paper's generator, whose latent space is shown, with the "
+                     "data's classes and joints, got another"));
+  }
+  torch::NoGradGuard no_grad;
+  network::Generator generator(manifest);
+  DUET_RETURN_IF_ERROR(network::LoadParameters(checkpoint, generator));
+  generator->eval();
+  metrics::FeatureSet features;
+  for (size_t first = 0; first < sequences.size(); first += kBatch) {
+    std::vector<training::Example> examples;
+    for (size_t i = first; i < std::min(sequences.size(), first + kBatch); ++i) {
+      examples.push_back(CapturedExample(dataset,
+                                         dataset.sequences[static_cast<size_t>(sequences[i])],
+                                         training::StartKnowledge::kNone));
+      std::vector<float>& weights = examples.back().weights;
+      if (!labelled) std::fill(weights.begin(), weights.end(), 0.0f);
+    }
+    const network::GeneratorInput input = training::MakeBatch(manifest, dataset, examples).input;
+    // The mean over each clip's own frames; without the outputs for padding.
+    const torch::Tensor frames = generator->Encode(input);
+    const torch::Tensor mask =
+        network::FrameMask(input.lengths, frames.size(0)).to(frames.dtype()).unsqueeze(2);
+    network::AppendRows((frames * mask).sum(0) / input.lengths.to(frames.dtype()).unsqueeze(1),
+                        &features);
+  }
+  return features;
 }
 
 }  // namespace duet::evaluation::judge
