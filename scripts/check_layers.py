@@ -75,7 +75,7 @@ LAYERS = (
     Layer("report", "model/evaluation/report",
           sees=("base", "motion", "dataset", "metrics")),
     Layer("evaluation program", "model/evaluation/program",
-          sees=MOTION_FILES + ("authoring", "body", "dataset", "engine", "checkpoint",
+          sees=MOTION_FILES + ("authoring", "body", "dataset", "solver", "engine", "checkpoint",
                                 "network", "torch engine", "training") + MEASURING),
     # The server, innermost first.
     Layer("server common", "server/common", sees=("base",), libraries=("rpc",)),

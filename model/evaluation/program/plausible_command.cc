@@ -26,6 +26,7 @@
 #include "model/motion/filter.h"
 #include "model/motion/resample.h"
 #include "model/retargeting/rig_fitting.h"
+#include "model/solver/partner.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -37,6 +38,8 @@ using motion::Poses;
 constexpr double kTwistedClipDegrees = 60;
 // A joint that turns faster than this is a fault.
 constexpr double kTurnDegreesPerSecond = 900;
+// Hands embrace behind the partner's trunk, within this distance of its hips.
+constexpr float kEmbraceMetres = 0.5f;
 // Leaders who do not move, for measurements of stillness: their length, unless --seconds is less;
 // the beginning, in which a follower may still come to rest; and the end.
 constexpr double kStillSeconds = 15, kSettlingSeconds = 3, kLastSeconds = 2;
@@ -154,7 +157,8 @@ report::Table FiguresTable(const std::string& title, const std::vector<std::stri
       "degrees.",
       "Hips off: by how much the hips are narrower or wider than their median width, as a share of "
       "it, in the worst frame of all answers. Hips: mean height of the hips above the lower foot, "
-      "in lengths of the leg. Knees: mean bend, degrees."};
+      "in lengths of the leg. Knees: mean bend, degrees. Embrace: share of frames in which both "
+      "hands are behind the leader's trunk."};
   return table;
 }
 
@@ -299,13 +303,24 @@ absl::StatusOr<report::Section> RunPlausible(const PlausibleFlags& flags) {
   return section;
 }
 
+// Whether both hands are behind the leader's trunk.
+bool Embraces(const motion::Skeleton& skeleton, const body::Body& body,
+              absl::Span<const motion::Vec3> leader, absl::Span<const motion::Vec3> follower) {
+  const solver::TrunkAxes trunk = solver::TrunkAxesOf(skeleton, body, leader);
+  const auto behind = [&](const body::Limb& arm) {
+    const motion::Vec3 place = trunk.PlaceOf(follower[static_cast<size_t>(arm.end)]);
+    return place.z < 0 && Norm(place) * trunk.length < kEmbraceMetres;
+  };
+  return !body.arms.empty() && std::all_of(body.arms.begin(), body.arms.end(), behind);
+}
+
 }  // namespace
 
 const std::vector<std::string>& PlausibleFigures() {
   static const auto& names = *new std::vector<std::string>{
-      "twisted clips", "twisted",  "both feet", "leader's",       "heads", "trunks",
-      "hands",         "distance", "speed",     "leader's speed", "turns", "lean",
-      "facing",        "hips off", "hips",      "knees"};
+      "twisted clips", "twisted",  "both feet", "leader's",       "heads",  "trunks",
+      "hands",         "distance", "speed",     "leader's speed", "turns",  "lean",
+      "facing",        "hips off", "hips",      "knees",          "embrace"};
   return names;
 }
 
@@ -314,7 +329,7 @@ std::vector<double> MeasurePlausibility(const motion::Skeleton& skeleton, const 
   const body::Body body = body::FindBody(skeleton);
   body::PairMeter meter(skeleton, body, rate);
   body::GradeSum sum;
-  double most_twisted = 0, heads = 0, trunks = 0;
+  double most_twisted = 0, heads = 0, trunks = 0, embraces = 0;
   std::vector<double> hands;
   for (int t = 0; t < leader.frame_count(); ++t) {
     const body::FrameMeasures frame = meter.Add(leader[t], follower[t]);
@@ -322,6 +337,7 @@ std::vector<double> MeasurePlausibility(const motion::Skeleton& skeleton, const 
     most_twisted = std::max(most_twisted, frame.twist_degrees);
     heads += frame.head_overlap > 0;
     trunks += frame.trunk_overlap > 0;
+    embraces += Embraces(skeleton, body, leader[t], follower[t]);
     const std::optional<double> apart =
         body::OfferedHandDistance(body, skeleton.root, leader[t], follower[t]);
     if (apart) hands.push_back(*apart);
@@ -344,7 +360,8 @@ std::vector<double> MeasurePlausibility(const motion::Skeleton& skeleton, const 
           body::FacingDegrees(leader, follower, skeleton),
           build.HipsOff(),
           build.hips_over_leg,
-          build.knee_degrees};
+          build.knee_degrees,
+          embraces / frames};
 }
 
 Measure AddPlausibleCommand(CLI::App* command) {

@@ -52,6 +52,19 @@ TEST(PlausibilityTest, AStandingPairHasNoFaults) {
   EXPECT_TRUE(std::isnan(Figure(Person(), follower, "hands")));
 }
 
+TEST(PlausibilityTest, AnEmbraceHasBothHandsBehindTheLeader) {
+  const motion::Poses leader = Person();
+  motion::Poses follower = Partner(0.4f);
+  constexpr int kRoot = 2, kHands[] = {5, 8};
+  for (const int hand : kHands) {
+    EXPECT_EQ(Figure(leader, follower, "embrace"), 0);
+    for (int t = 0; t < follower.frame_count(); ++t) {
+      follower.at(t, hand) = leader.at(t, kRoot) + motion::Vec3{0, 0.1f, 0.15f};
+    }
+  }
+  EXPECT_EQ(Figure(leader, follower, "embrace"), 1);
+}
+
 TEST(PlausibilityTest, AFollowerWhoTurnsAway) {
   motion::Poses follower = Partner(1.2f);
   EXPECT_LT(Figure(Person(), follower, "facing"), 20);
