@@ -123,7 +123,8 @@ std::vector<MotionBatch> Batches(const dataset::Dataset& dataset,
 // To generalise to unseen people, the classifier must not depend on the proportions of the people
 // in the clip, nor on the clip's start and end: both are varied. These values, like the defaults of
 // MotionClassifierOptions, were chosen on held-back training subjects.
-constexpr double kLabelSmoothing = 0.1;
+constexpr int64_t kTrainingBatch = 16;
+constexpr double kLearningRate = 2e-3, kWeightDecay = 0.01, kDropout = 0.3, kLabelSmoothing = 0.1;
 
 training::TrainingOptions::Augmentation Variations() {
   training::TrainingOptions::Augmentation augmentation;
@@ -157,7 +158,7 @@ std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
     varied.push_back(Vary(dataset, sequence, options.body_noise, &random));
   }
   random.Shuffle(&varied);
-  return Batches(dataset, varied, static_cast<size_t>(options.batch), options.sees);
+  return Batches(dataset, varied, size_t{kTrainingBatch}, options.sees);
 }
 
 network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
@@ -170,12 +171,12 @@ network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
   sizes.outputs = dataset.class_count();
   torch::manual_seed(options.seed);
   network::Discriminator network(sizes);
-  network->set_dropout(options.dropout);
+  network->set_dropout(kDropout);
   const int64_t count = static_cast<int64_t>(sequences.size());
-  const int64_t steps = options.epochs * ((count + options.batch - 1) / options.batch);
+  const int64_t steps = options.epochs * ((count + kTrainingBatch - 1) / kTrainingBatch);
   training::TrainingOptions::Optimiser settings;
-  settings.learning_rate = options.learning_rate;
-  settings.weight_decay = options.weight_decay;
+  settings.learning_rate = kLearningRate;
+  settings.weight_decay = kWeightDecay;
   settings.gradient_clip = 1;
   training::Optimiser optimiser(settings, network->parameters(), steps);
   const auto smoothed =

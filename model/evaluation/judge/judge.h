@@ -20,10 +20,6 @@ struct MotionClassifierOptions {
   int64_t members = 1;  // networks with different seeds, whose probabilities are averaged
   int64_t hidden = 32;  // LSTM units of each direction, in both layers
   int64_t epochs = 20;
-  int64_t batch = 16;
-  double learning_rate = 2e-3;
-  double weight_decay = 0.01;
-  double dropout = 0.3;
   // Standard deviation of one offset per joint and training motion, metres: makes the classifier
   // independent of people's proportions.
   double body_noise = 0.05;

@@ -48,10 +48,6 @@ motion::Poses WithoutRoot(motion::Poses poses, int root) {
   return poses;
 }
 
-size_t MotionCount(const SampledMotions& samples) {
-  return samples.empty() ? 0 : samples.front().size();
-}
-
 // Between two followers of a sequence, in the world as captured, to which the raw unit refers.
 double Distance(const dataset::Sequence& sequence, const motion::Poses& a, const motion::Poses& b) {
   return Afd(sequence.levelling.Invert(a), sequence.levelling.Invert(b), MetricUnit::kSbuRaw);
@@ -242,7 +238,7 @@ std::vector<ScoredMotion> Pool(const SampledMotions& samples) {
 std::vector<ScoredMotion> MeanAnswers(const SampledMotions& samples) {
   std::vector<ScoredMotion> means;
   const float share = 1 / static_cast<float>(samples.size());
-  for (size_t i = 0; i < MotionCount(samples); ++i) {
+  for (size_t i = 0; i < samples.front().size(); ++i) {
     ScoredMotion mean = samples.front()[i];
     for (size_t p = 0; p < mean.follower.all().size(); ++p) {
       motion::Vec3 sum;
@@ -257,7 +253,7 @@ std::vector<ScoredMotion> MeanAnswers(const SampledMotions& samples) {
 std::vector<ScoredMotion> BestAnswers(const dataset::Dataset& dataset,
                                       const SampledMotions& samples) {
   std::vector<ScoredMotion> answers;
-  for (size_t i = 0; i < MotionCount(samples); ++i) {
+  for (size_t i = 0; i < samples.front().size(); ++i) {
     const ScoredMotion* best = &samples.front()[i];
     double least = std::numeric_limits<double>::infinity();
     for (const std::vector<ScoredMotion>& set : samples) {
@@ -275,7 +271,7 @@ std::vector<ScoredMotion> BestAnswers(const dataset::Dataset& dataset,
 std::vector<double> MultimodalityByClass(const dataset::Dataset& dataset,
                                          const SampledMotions& samples) {
   std::vector<double> sums(dataset.classes.size()), counts(dataset.classes.size());
-  for (size_t i = 0; i < MotionCount(samples); ++i) {
+  for (size_t i = 0; i < samples.front().size(); ++i) {
     const auto c = static_cast<size_t>(SequenceOf(dataset, samples.front()[i]).interaction_class);
     sums[c] += Spread(dataset, samples, i);
     ++counts[c];
@@ -321,28 +317,19 @@ double NeighbourAccuracy(const FeatureSet& features, const std::vector<int>& cla
   return right / static_cast<double>(features.size());
 }
 
-std::vector<double> ClassAccuracies(const std::vector<int>& meant,
-                                    const std::vector<std::vector<float>>& probabilities,
-                                    int classes) {
+std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes) {
   std::vector<double> right(static_cast<size_t>(classes)), all(right.size());
-  for (size_t i = 0; i < meant.size(); ++i) {
-    const std::vector<float>& one = probabilities[i];
-    const auto likeliest = std::max_element(one.begin(), one.end()) - one.begin();
-    if (likeliest == meant[i]) ++right[static_cast<size_t>(meant[i])];
-    ++all[static_cast<size_t>(meant[i])];
+  for (const JudgedFold& fold : folds) {
+    for (size_t i = 0; i < fold.classes.size(); ++i) {
+      const std::vector<float>& one = fold.probabilities[i];
+      const auto likeliest = std::max_element(one.begin(), one.end()) - one.begin();
+      const auto meant = static_cast<size_t>(fold.classes[i]);
+      if (static_cast<size_t>(likeliest) == meant) ++right[meant];
+      ++all[meant];
+    }
   }
   for (size_t c = 0; c < right.size(); ++c) right[c] /= all[c];
   return right;
-}
-
-std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes) {
-  JudgedFold all;
-  for (const JudgedFold& fold : folds) {
-    all.classes.insert(all.classes.end(), fold.classes.begin(), fold.classes.end());
-    all.probabilities.insert(all.probabilities.end(), fold.probabilities.begin(),
-                             fold.probabilities.end());
-  }
-  return ClassAccuracies(all.classes, all.probabilities, classes);
 }
 
 std::vector<double> FrechetByClass(const std::vector<JudgedFold>& made,

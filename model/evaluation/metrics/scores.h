@@ -60,7 +60,7 @@ motion::Standardisation StandardOf(const motion::Skeleton& skeleton,
                                    motion::StandardOrigin origin);
 
 // Every metric of one motion by its name. Names are lower_snake_case, with the unit unless the
-// title of the table has it (report/metric_tables.cc). Metrics in SBU's raw unit are measured in
+// title of the table has it (report::MetricStyles). Metrics in SBU's raw unit are measured in
 // the world as captured, before levelling.
 std::map<std::string, double> ScoreMotion(const dataset::Dataset& dataset,
                                           const ScoredMotion& motion);
@@ -130,12 +130,6 @@ double Diversity(const FeatureSet& features);
 // [samples].
 double NeighbourAccuracy(const FeatureSet& features, const std::vector<int>& classes);
 
-// The share of each class's motions whose likeliest class it is; NaN for a class without any.
-// Shapes: meant [motions], probabilities [motions][classes]; returns [classes].
-std::vector<double> ClassAccuracies(const std::vector<int>& meant,
-                                    const std::vector<std::vector<float>>& probabilities,
-                                    int classes);
-
 // Figures by class from the judges' results. Each fold has its own judge: features are comparable
 // only within a fold.
 
@@ -146,7 +140,8 @@ struct JudgedFold {
   FeatureSet features;                            // [motions][features]
 };
 
-// ClassAccuracies over all folds. Shapes: returns [classes].
+// The share of each class's motions, over all folds, whose likeliest class it is; NaN for a class
+// without any. Shapes: returns [classes].
 std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes);
 
 // The Frechet distance between synthesised and captured motions of each class within a fold,

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "model/base/status_macros.h"
 #include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/experiment.h"
@@ -27,6 +28,44 @@ struct FoldsFlags : ExperimentFlags {
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// One answer to each test leader of each fold. Shapes: [folds][test].
+using FoldAnswers = std::vector<std::vector<metrics::ScoredMotion>>;
+
+FoldAnswers CapturedAnswers(const Experiment& experiment) {
+  FoldAnswers captured;
+  for (const Fold& fold : experiment.folds) {
+    captured.push_back(metrics::CapturedMotions(experiment.dataset, fold.split.test));
+  }
+  return captured;
+}
+
+// The results of each fold's judge. Shapes: judges and answers [folds].
+std::vector<metrics::JudgedFold> JudgeFolds(const std::vector<judge::MotionClassifier>& judges,
+                                            const dataset::Dataset& dataset,
+                                            const FoldAnswers& answers) {
+  std::vector<metrics::JudgedFold> judged;
+  for (size_t i = 0; i < judges.size(); ++i) {
+    judged.push_back(judges[i].Judge(dataset, answers[i]));
+  }
+  return judged;
+}
+
+// A model's answers, each in the class of its sequence at weight 1. Shapes: returns [samples].
+absl::StatusOr<std::vector<FoldAnswers>> AnswerFolds(const Experiment& experiment,
+                                                     const FoldModel& model) {
+  std::vector<FoldAnswers> sets;
+  for (const Fold& fold : experiment.folds) {
+    DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
+    DUET_TRY(metrics::SampledMotions of_fold,
+             AnswerWithSamples(*synthesizer, experiment.dataset, fold.split.test, model.asked));
+    sets.resize(of_fold.size());
+    for (size_t n = 0; n < sets.size(); ++n) sets[n].push_back(std::move(of_fold[n]));
+    std::cerr << absl::StrCat(model.name, " without ", fold.subject, ": ", fold.split.test.size(),
+                              " leaders, ", sets.size(), " answers each\n");
+  }
+  return sets;
 }
 
 FoldAnswers Filtered(const dataset::Dataset& dataset, FoldAnswers folds) {

@@ -21,7 +21,6 @@
 #include "model/dataset/lone_leaders.h"
 #include "model/engine/live_synthesis.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/measures.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/filter.h"
 #include "model/motion/resample.h"

@@ -16,17 +16,6 @@ using ::testing::NanSensitiveDoubleEq;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-TEST(ClassAccuraciesTest, CountTheLikeliestClassOfEachMotion) {
-  EXPECT_THAT(ClassAccuracies({0, 0, 1, 1, 1},
-                              {{0.9f, 0.1f, 0},
-                               {0.2f, 0.8f, 0},
-                               {0.5f, 0.5f, 0},  // the first of equals
-                               {0, 1, 0},
-                               {0, 0.9f, 0.1f}},
-                              3),
-              ElementsAre(0.5, DoubleEq(2.0 / 3), NanSensitiveDoubleEq(kNone)));
-}
-
 FeatureSet RandomSet(int samples, int width, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/evaluation/program/measures.h"
+#include "model/evaluation/program/experiment.h"
 #include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/evaluation/support/run_command.h"

@@ -5,7 +5,7 @@
 
 #include "model/authoring/made_leaders.h"
 #include "model/base/statistics.h"
-#include "model/evaluation/program/measures.h"
+#include "model/evaluation/program/experiment.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
 

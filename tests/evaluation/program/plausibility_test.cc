@@ -3,7 +3,7 @@
 
 #include "gtest/gtest.h"
 #include "model/authoring/made_leaders.h"
-#include "model/evaluation/program/measures.h"
+#include "model/evaluation/program/experiment.h"
 
 namespace duet::evaluation::program {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "model/evaluation/program/measures.h"
+#include "model/evaluation/program/experiment.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::program {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "model/evaluation/program/measures.h"
+#include "model/evaluation/program/experiment.h"
 #include "tests/support/matchers.h"
 
 namespace duet::evaluation::program {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "model/evaluation/program/measures.h"
+#include "model/evaluation/program/experiment.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::program {
