@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "model/motion/body_part.h"
 #include "model/motion/clip.h"
 #include "model/motion/levelling.h"
@@ -79,7 +81,7 @@ struct Dataset {
 //   own data  dataset.json beside <class>/<sequence>.txt, or beside labels.tsv and the files that
 //             it names (docs/datasets.md)
 //
-// Levels SBU, K3HI, and your own data if its dataset.json requests it (levelling.h), set by set: a
+// Levels SBU, K3HI, and your own data if its dataset.json requests it (LevelSets), set by set: a
 // set is an SBU folder sXXsYY, or otherwise the whole data set.
 //
 // The leader's side comes from index.tsv if it states one, otherwise from the motion rule: the
@@ -88,6 +90,33 @@ struct Dataset {
 //
 // Errors: NOT_FOUND if the folder is not a data set; INVALID_ARGUMENT naming file and line.
 absl::StatusOr<Dataset> ReadDataset(const std::filesystem::path& folder);
+
+// Levels captures of a tilted camera, in which people lean. All sequences of a set (Sequence::set)
+// share one motion::Levelling, which each of them stores.
+//
+// The vertical is the robust mean (posture.h) of the standing directions of both people in all
+// frames of the set. It is shrunk towards that of the whole data set, with the weight of 3
+// sequences. The floor is the lower quartile of the heights of the lower feet. The floor's slope is
+// not used (docs/decisions/captures.md).
+//
+// Unchanged: data with fewer than 60 standing poses, with a skeleton without feet, or with people
+// who lie rather than lean (a set's vertical is more than 30 degrees from +y).
+void LevelSets(Dataset* dataset);
+
+// Parses labels.tsv: a header with the columns `path`, `class`, `from_seconds` and `to_seconds`,
+// then one span per line. Returns the spans by path, sorted by their first frame. A span covers the
+// frames from the one nearest to `from_seconds` up to the one nearest to `to_seconds`, exclusive.
+// Errors: INVALID_ARGUMENT naming line and column, the expected value and the actual one.
+absl::StatusOr<std::map<std::string, std::vector<LabelSpan>>> ParseTimeLines(
+    absl::string_view text, const std::vector<std::string>& classes, double frame_rate_hz);
+
+// The class that covers most frames; -1 if no class covers any.
+int LongestClass(const std::vector<LabelSpan>& labels);
+
+// Cuts a sequence of more than `frames` frames into windows of `frames` that begin `stride` frames
+// apart; the last one ends with the sequence. A window's label is the part of the time line in it.
+// Omits windows without a class. A sequence that is not longer is returned unchanged.
+std::vector<Sequence> CutIntoWindows(const Sequence& sequence, int frames, int stride);
 
 // Indices into Dataset::sequences.
 struct Split {

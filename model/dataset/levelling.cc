@@ -1,11 +1,10 @@
-#include "model/dataset/levelling.h"
-
 #include <cstddef>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "model/dataset/dataset.h"
 #include "model/motion/posture.h"
 
 namespace duet::dataset {

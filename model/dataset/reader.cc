@@ -11,8 +11,6 @@
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
-#include "model/dataset/levelling.h"
-#include "model/dataset/time_line.h"
 #include "model/formats/flat/flat_files.h"
 
 namespace duet::dataset {

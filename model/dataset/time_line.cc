@@ -1,5 +1,3 @@
-#include "model/dataset/time_line.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +9,7 @@
 #include "absl/strings/strip.h"
 #include "model/base/status_macros.h"
 #include "model/base/text.h"
+#include "model/dataset/dataset.h"
 #include "model/motion/resample.h"
 
 namespace duet::dataset {

@@ -19,7 +19,6 @@
 #include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
 #include "model/dataset/lone_leaders.h"
-#include "model/dataset/time_line.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/exceptions.h"
 #include "model/training/augment.h"

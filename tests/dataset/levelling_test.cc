@@ -1,9 +1,8 @@
-#include "model/dataset/levelling.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "model/dataset/dataset.h"
 #include "model/motion/posture.h"
 #include "tests/support/sample_motion.h"
 

@@ -1,7 +1,6 @@
-#include "model/dataset/time_line.h"
-
 #include <gmock/gmock.h>
 
+#include "model/dataset/dataset.h"
 #include "tests/support/matchers.h"
 
 namespace duet::dataset {
