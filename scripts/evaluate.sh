@@ -9,8 +9,15 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly bin="$1" data="$2" runs="$3" results="$4" report="$5"
-readonly ablations=(without_discriminator without_embedding without_bone with_paper_frame
-  with_continuity without_fc)
+# Names, and the settings of the default that each of them changes.
+readonly ablations=(
+  "without_discriminator losses.adversarial=0"
+  "without_embedding generator.variant=unlabelled graded_labels=0"
+  "without_bone losses.bone=0"
+  "with_paper_frame standardisation=leader_root_and_yaw"
+  "with_continuity losses.continuity=1"
+  "without_fc generator.slice_features=0"
+)
 readonly methods=class_mean,frozen_first_frame,nearest_neighbour,hmm,kzbh12,hk14,hfkb15
 readonly quality=velocity_error,bone_length_drift,jitter,skating_ratio,foot_slide_cm
 readonly touch=penetration_frequency,penetration_depth_m
@@ -20,10 +27,12 @@ export OMP_NUM_THREADS=1
 
 readonly ablation_epochs=50
 
-ablate() { # CONFIG [FOLD...]
-  local config="$1" fold
-  local command=("${bin}/duet-train" --data "${data}" --out "${runs}/ablation/${config}"
-    --config "${config}" --set "epochs=${ablation_epochs}" --protocol loso)
+ablate() { # "NAME [SETTING...]" [FOLD...]
+  local named settings fold
+  read -ra named <<<"$1"
+  settings=("${named[@]:1}")
+  local command=("${bin}/duet-train" --data "${data}" --out "${runs}/ablation/${named[0]}"
+    "--set=epochs=${ablation_epochs}" "${settings[@]/#/--set=}" --protocol loso)
   shift
   (($#)) || "${command[@]}"
   for fold in "$@"; do "${command[@]}" --fold "${fold}"; done
@@ -68,7 +77,7 @@ measure() {
     --title "The same model as a server answers" --baselines class_mean,frozen_first_frame \
     --runs "ours=${runs}/default" --metrics "afd,afd_squared,${quality},${touch}"
   sampled
-  for config in "${ablations[@]}"; do named+=("${config}=${runs}/ablation/${config}"); done
+  for config in "${ablations[@]%% *}"; do named+=("${config}=${runs}/ablation/${config}"); done
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 20_ablation \
     --title "Ablation (Tables 4 and 5)" --starts none,pose --baselines class_mean \
     ${FOLDS:+--subjects "${FOLDS// /,}"} "${named[@]/#/--runs=}" \
