@@ -28,23 +28,13 @@ int WholeBodyInput(const Manifest& manifest, const PaperArchitecture& paper) {
   return input;
 }
 
-void ReadFields(base::ObjectReader* reader, PaperArchitecture* out) {
-  out->variant = ReadNamed(reader, "variant", kVariantNames);
-  out->follower_start = reader->Bool("follower_start");
-  out->slice_features = static_cast<int>(reader->Int("slice_features", 0, kMaxUnits));
-  out->encoder_hidden = static_cast<int>(reader->Int("encoder_hidden", 1, kMaxUnits));
-  out->attention = static_cast<int>(reader->Int("attention", 1, kMaxUnits));
-  out->base_pose = reader->Bool("base_pose");
-}
-
-nlohmann::ordered_json ToJson(const PaperArchitecture& paper) {
-  return {{"variant", std::string(NameOf(kVariantNames, paper.variant))},
-          {"follower_start", paper.follower_start},
-          {"slice_features", paper.slice_features},
-          {"encoder_hidden", paper.encoder_hidden},
-          {"attention", paper.attention},
-          {"base_pose", paper.base_pose},
-          {kArchitectureKind, PaperArchitecture::kKind}};
+void Declare(Fields* fields, PaperArchitecture* paper) {
+  fields->Choice("variant", kVariantNames, &paper->variant);
+  fields->Bool("follower_start", &paper->follower_start);
+  fields->Int("slice_features", 0, kMaxUnits, &paper->slice_features);
+  fields->Int("encoder_hidden", 1, kMaxUnits, &paper->encoder_hidden);
+  fields->Int("attention", 1, kMaxUnits, &paper->attention);
+  fields->Bool("base_pose", &paper->base_pose);
 }
 
 }  // namespace
@@ -108,9 +98,6 @@ namespace {
 constexpr int kMaxBlocks = 64;
 constexpr int kMaxSteps = 100;
 
-constexpr char kFrameLabels[] = "frame_labels";
-constexpr char kHiddenFrames[] = "hidden_frames";
-
 constexpr int64_t kModulations = 4;  // shift and scale, before attention and before feed-forward
 constexpr int64_t kStartStates = 2;  // without a start, with a start
 
@@ -131,54 +118,32 @@ void AddBlock(const std::string& name, const FlowArchitecture& flow,
   AddLinear(name + ".contract", width, flow.feed_forward, specs);
 }
 
-void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
-  out->width = static_cast<int>(reader->Int("width", 1, kMaxUnits));
-  out->blocks = static_cast<int>(reader->Int("blocks", 1, kMaxBlocks));
-  out->heads = static_cast<int>(reader->Int("heads", 1, kMaxUnits));
-  if (reader->ok() && out->width % out->heads != 0) {
-    reader->Fail("heads", absl::StrCat("expected a divisor of the width ", out->width, ", got ",
-                                       out->heads));
+void Declare(Fields* fields, FlowArchitecture* flow) {
+  fields->Int("width", 1, kMaxUnits, &flow->width);
+  fields->Int("blocks", 1, kMaxBlocks, &flow->blocks);
+  fields->Int("heads", 1, kMaxUnits, &flow->heads);
+  if (fields->ReadsWell() && flow->width % flow->heads != 0) {
+    fields->Fail("heads", absl::StrCat("expected a divisor of the width ", flow->width, ", got ",
+                                       flow->heads));
   }
-  out->feed_forward = static_cast<int>(reader->Int("feed_forward", 1, kMaxUnits));
-  out->reach = static_cast<int>(reader->Int("reach", 1, kMaxUnits));
-  // Optional: checkpoints of earlier versions do not have them.
-  out->frame_labels = reader->Has(kFrameLabels) && reader->Bool(kFrameLabels);
-  out->hidden_frames = reader->Has(kHiddenFrames) && reader->Bool(kHiddenFrames);
-  out->offset_scale = reader->Number("offset_scale", 1e-6, 1e3);
-  ReadSection(reader, "noise", [&noise = out->noise](base::ObjectReader* fields) {
-    noise.frame_length = fields->Number("frame_length", 0.1, 1000);
-    noise.constant_share = fields->Number("constant_share", 0, 1);
-    noise.ramp_frames = static_cast<int>(fields->Int("ramp_frames", 1, kMaxUnits));
-    noise.white = fields->Number("white", 0, 10);
+  fields->Int("feed_forward", 1, kMaxUnits, &flow->feed_forward);
+  fields->Int("reach", 1, kMaxUnits, &flow->reach);
+  fields->Number("offset_scale", 1e-6, 1e3, &flow->offset_scale);
+  fields->Section("noise", [&, &noise = flow->noise] {
+    fields->Number("frame_length", 0.1, 1000, &noise.frame_length);
+    fields->Share("constant_share", &noise.constant_share);
+    fields->Int("ramp_frames", 1, kMaxUnits, &noise.ramp_frames);
+    fields->Number("white", 0, 10, &noise.white);
   });
-  out->steps = static_cast<int>(reader->Int("steps", 1, kMaxSteps));
-  out->guidance = reader->Number("guidance", 0, 10);
-  if (reader->ok() && out->frame_labels && out->guidance != 1) {
-    reader->Fail("guidance",
-                 absl::StrCat("expected 1 with ", kFrameLabels, ", got ", out->guidance));
+  fields->Int("steps", 1, kMaxSteps, &flow->steps);
+  fields->Number("guidance", 0, 10, &flow->guidance);
+  fields->Int("fade_frames", 0, kMaxUnits, &flow->fade_frames);
+  // Checkpoints of earlier versions do not have them.
+  fields->OptionalBool("frame_labels", &flow->frame_labels);
+  fields->OptionalBool("hidden_frames", &flow->hidden_frames);
+  if (fields->ReadsWell() && flow->frame_labels && flow->guidance != 1) {
+    fields->Fail("guidance", absl::StrCat("expected 1 with frame_labels, got ", flow->guidance));
   }
-  out->fade_frames = static_cast<int>(reader->Int("fade_frames", 0, kMaxUnits));
-}
-
-nlohmann::ordered_json ToJson(const FlowArchitecture& flow) {
-  nlohmann::ordered_json json = {{kArchitectureKind, FlowArchitecture::kKind},
-                                 {"width", flow.width},
-                                 {"blocks", flow.blocks},
-                                 {"heads", flow.heads},
-                                 {"feed_forward", flow.feed_forward},
-                                 {"reach", flow.reach},
-                                 {"offset_scale", flow.offset_scale},
-                                 {"noise",
-                                  {{"frame_length", flow.noise.frame_length},
-                                   {"constant_share", flow.noise.constant_share},
-                                   {"ramp_frames", flow.noise.ramp_frames},
-                                   {"white", flow.noise.white}}},
-                                 {"steps", flow.steps},
-                                 {"guidance", flow.guidance},
-                                 {"fade_frames", flow.fade_frames}};
-  if (flow.frame_labels) json[kFrameLabels] = true;
-  if (flow.hidden_frames) json[kHiddenFrames] = true;
-  return json;
 }
 
 }  // namespace
@@ -215,7 +180,8 @@ namespace {
 template <typename T>
 Architecture ReadAs(base::ObjectReader* reader) {
   T architecture;
-  ReadFields(reader, &architecture);
+  Fields fields(reader);
+  Declare(&fields, &architecture);
   return architecture;
 }
 
@@ -231,7 +197,16 @@ Architecture ReadArchitecture(bool has_kind, base::ObjectReader* reader) {
 }
 
 nlohmann::ordered_json ToJson(const Architecture& architecture) {
-  return std::visit([](const auto& one) { return ToJson(one); }, architecture);
+  return std::visit(
+      [](auto one) {
+        nlohmann::ordered_json json;
+        if (one.kSamples) json[kArchitectureKind] = one.kKind;  // the paper's is written last
+        Fields fields(&json);
+        Declare(&fields, &one);
+        json[kArchitectureKind] = one.kKind;
+        return json;
+      },
+      architecture);
 }
 
 void SetArchitecture(const Architecture& architecture, Manifest* manifest) {

@@ -149,7 +149,7 @@ std::vector<TensorSpec> Tensors(const Manifest& manifest, const FlowArchitecture
 //   AcceptsFollowerStart()
 //   LabelsGuide()           // ModelDescription::labels_guide
 //   Tensors(manifest, T), declared beside T
-//   ReadFields and ToJson in architecture.cc
+//   Declare(Fields*, T*) in architecture.cc
 // All that dispatches on the variant in this layer is architecture.cc. The layers above register
 // each alternative in one place each; docs/guides/add_a_model_architecture.md lists them.
 using Architecture = std::variant<PaperArchitecture, FlowArchitecture>;

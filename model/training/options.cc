@@ -23,96 +23,19 @@
 namespace duet::training {
 namespace {
 
+using checkpoint::Fields;
 using nlohmann::json;
 
 using Replacements = std::vector<std::pair<std::string, std::string>>;
 
-constexpr std::size_t kMaxWords = 256, kMaxWordBytes = 64;
+constexpr std::size_t kMaxNameBytes = 64;
 constexpr int64_t kMaxUnits = 4096;
 constexpr int64_t kMaxEpochs = 1000000;
 constexpr double kMaxWeight = 1e6;
 
-// Settings by dotted path, with their values as text.
-using Description = std::map<std::string, std::string>;
-
-// The fields of a training configuration. Settings declare themselves once, for reading a
-// configuration and for describing it:
-//
-//   fields->Section("drift", [&] {
-//     fields->Share("share", &drift->share);
-//     fields->Number("tilt", 0, 4, &drift->tilt);
-//   });
-class SettingFields {
- public:
-  // Reads the values from a JSON object. Errors are recorded in `reader`.
-  explicit SettingFields(base::ObjectReader* reader) : reader_(reader) {}
-  // Adds the values to `description`, as the shortest texts that read back as the same values.
-  explicit SettingFields(Description* description) : description_(description) {}
-
-  // Whether there is a field of this name. Fields that configurations of earlier versions lack are
-  // declared only if there is one.
-  bool Has(const std::string& name) const { return reader_ == nullptr || reader_->Has(name); }
-  void Number(const std::string& name, double min, double max, double* value) {
-    if (reader_ != nullptr) {
-      *value = reader_->Number(name, min, max);
-    } else {
-      Describe(name, std::string(absl::StripSuffix(json(*value).dump(), ".0")));
-    }
-  }
-  // A probability, or a part of a whole.
-  void Share(const std::string& name, double* value) { Number(name, 0, 1, value); }
-  void Int(const std::string& name, int64_t min, int64_t max, int64_t* value) {
-    if (reader_ != nullptr) *value = reader_->Int(name, min, max);
-    Describe(name, absl::StrCat(*value));
-  }
-  void Bool(const std::string& name, bool* value) {
-    if (reader_ != nullptr) *value = reader_->Bool(name);
-    Describe(name, *value ? "true" : "false");
-  }
-  // One of several words.
-  void Word(const std::string& name, const std::vector<std::string>& choices, std::string* value) {
-    Describe(name, *value);
-    if (reader_ == nullptr) return;
-    *value = reader_->String(name, kMaxWordBytes);
-    if (reader_->ok() && std::find(choices.begin(), choices.end(), *value) == choices.end()) {
-      reader_->Fail(name, absl::StrCat("expected one of ", absl::StrJoin(choices, ", "), ", got ",
-                                       base::Quoted(*value)));
-    }
-  }
-  void Words(const std::string& name, std::vector<std::string>* values) {
-    if (reader_ != nullptr) *values = reader_->Strings(name, kMaxWords);
-    Describe(name, absl::StrJoin(*values, " "));
-  }
-
-  // Declares the fields of the object `name` with `declare()`.
-  template <typename Declare>
-  void Section(const std::string& name, Declare declare) {
-    const std::string outer = std::exchange(path_, path_ + name + ".");
-    if (reader_ == nullptr) {
-      declare();
-    } else {
-      checkpoint::ReadSection(reader_, name, [&](base::ObjectReader* section) {
-        base::ObjectReader* const reader = std::exchange(reader_, section);
-        declare();
-        reader_ = reader;
-      });
-    }
-    path_ = outer;
-  }
-
- private:
-  void Describe(const std::string& name, const std::string& value) {
-    if (description_ != nullptr) (*description_)[path_ + name] = value;
-  }
-
-  base::ObjectReader* reader_ = nullptr;  // of the current section
-  Description* description_ = nullptr;
-  std::string path_;  // of the current section, with a dot at its end
-};
-
 constexpr int64_t kMostSteps = 100000000;
 
-void Declare(SettingFields* fields, FlowTraining* flow) {
+void Declare(Fields* fields, FlowTraining* flow) {
   fields->Section("flow", [&] {
     fields->Number("dropout", 0, 0.95, &flow->dropout);
     fields->Int("passes", 1, kMaxEpochs, &flow->passes);
@@ -189,7 +112,7 @@ void Declare(SettingFields* fields, FlowTraining* flow) {
   }
 }
 
-void Declare(SettingFields* fields, PaperTraining* paper) {
+void Declare(Fields* fields, PaperTraining* paper) {
   fields->Section("dropout", [&] {
     fields->Number("slices", 0, 0.95, &paper->dropout.slices);
     fields->Number("encoded", 0, 0.95, &paper->dropout.encoded);
@@ -213,7 +136,8 @@ void Declare(SettingFields* fields, PaperTraining* paper) {
 constexpr int kMaxDepth = 4;
 
 // Declares every setting that does not depend on the method.
-void Declare(SettingFields* fields, TrainingOptions* options) {
+void Declare(Fields* fields, TrainingOptions* options) {
+  fields->Choice("standardisation", checkpoint::kStandardisationNames, &options->standardisation);
   fields->Section("optimiser", [&, &optimiser = options->optimiser] {
     fields->Word("name", {"adam", "rmsprop"}, &optimiser.name);
     fields->Number("learning_rate", 1e-9, 10, &optimiser.learning_rate);
@@ -265,7 +189,7 @@ FlowTraining MethodFor(const checkpoint::FlowArchitecture& architecture) {
   return method;
 }
 
-Method ReadMethod(base::ObjectReader* root, SettingFields* fields) {
+Method ReadMethod(base::ObjectReader* root, Fields* fields) {
   checkpoint::Architecture architecture;
   checkpoint::ReadSection(root, "generator", [&architecture](base::ObjectReader* generator) {
     architecture =
@@ -279,10 +203,9 @@ Method ReadMethod(base::ObjectReader* root, SettingFields* fields) {
 
 absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
   base::ObjectReader root(value, "");
-  SettingFields fields(&root);
+  Fields fields(&root);
   TrainingOptions options;
   options.method = ReadMethod(&root, &fields);
-  options.standardisation = ReadNamed(&root, "standardisation", checkpoint::kStandardisationNames);
   Declare(&fields, &options);
   if (absl::Status status = root.Finish(); !status.ok()) return status;
   const TrainingOptions::Start& start = options.start;
@@ -310,10 +233,25 @@ absl::Status Replace(const std::string& path, const std::string& text, json* roo
   return absl::OkStatus();
 }
 
+// Adds the values in an object by dotted path, as the shortest texts that read back the same.
+void AddTexts(const nlohmann::ordered_json& object, const std::string& path,
+              std::map<std::string, std::string>* texts) {
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_object()) {
+      AddTexts(value, path + name + ".", texts);
+      continue;
+    }
+    (*texts)[path + name] = value.is_string() ? value.get<std::string>()
+                            : value.is_array()
+                                ? absl::StrJoin(value.get<std::vector<std::string>>(), " ")
+                                : std::string(absl::StripSuffix(value.dump(), ".0"));
+  }
+}
+
 // Parses a base and the changes to it.
 absl::StatusOr<TrainingOptions> ParseDerived(const json& value, const Replacements& replacements) {
   base::ObjectReader reader(value, "");
-  const std::string name = reader.String("base", kMaxWordBytes);
+  const std::string name = reader.String("base", kMaxNameBytes);
   const NamedConfig* const base = FindConfig(name);
   if (reader.ok() && base == nullptr) {
     reader.Fail("base", absl::StrCat("expected a named configuration, got ", base::Quoted(name)));
@@ -367,12 +305,12 @@ checkpoint::Architecture ArchitectureOf(const TrainingOptions& options) {
 
 std::map<std::string, std::string> Describe(const TrainingOptions& options) {
   TrainingOptions declared = options;
-  Description description;
-  SettingFields fields(&description);
+  nlohmann::ordered_json written;
+  Fields fields(&written);
   Declare(&fields, &declared);
   std::visit([&fields](auto& one) { Declare(&fields, &one); }, declared.method);
-  description["standardisation"] =
-      std::string(NameOf(checkpoint::kStandardisationNames, options.standardisation));
+  std::map<std::string, std::string> description;
+  AddTexts(written, "", &description);
   return description;
 }
 
