@@ -32,10 +32,10 @@ def generated():
                     f"--plugin=protoc-gen-grpc_python={plugin}", *protos], check=True)
     sys.path.insert(0, folder)
     from duet.v1 import model_pb2, reaction_pb2, synthesis_pb2, synthesis_pb2_grpc
-    return model_pb2, synthesis_pb2, synthesis_pb2_grpc
+    return model_pb2, reaction_pb2, synthesis_pb2, synthesis_pb2_grpc
 
 
-model_pb2, synthesis_pb2, synthesis_pb2_grpc = generated()
+model_pb2, reaction_pb2, synthesis_pb2, synthesis_pb2_grpc = generated()
 
 
 class Service(synthesis_pb2_grpc.MotionSynthesisServicer):
