@@ -208,6 +208,8 @@ class Correction {
   // Brings a hand to where it rests on the leader's trunk, where both people are close and the hand
   // is near already. Weights and reach are smooth: rounding must not become a motion.
   void HoldTrunk(std::size_t arm) {
+    const auto holds_here = [arm](const ContactRule& rule) { return rule.holds[arm].weight > 0; };
+    if (std::none_of(encounter_.rules.begin(), encounter_.rules.end(), holds_here)) return;
     const body::Limb& limb = body_.arms[arm];
     motion::Poses weights(frames_, 1);  // x
     std::vector<Vec3> places;
