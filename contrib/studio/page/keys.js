@@ -31,14 +31,8 @@ function usesKey(item, key) {
 
 function connectKeys() {
   window.addEventListener('keydown', (event) => {
-    if (event.defaultPrevented || event.altKey) return;
+    if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    if (event.ctrlKey || event.metaKey) {
-      if (key !== 's' && key !== 'o') return;
-      event.preventDefault();
-      press(key === 's' ? 'save' : 'open');
-      return;
-    }
     if (usesKey(event.target, key)) return;
     const place = '12345678'.indexOf(key);
     if (place >= 0) chooseTile(place);

@@ -1,5 +1,5 @@
 'use strict';
-// Connects the page's parts: leader, settings, answers, timeline, sessions, downloads.
+// Connects the page's parts: leader, settings, answers, timeline, downloads.
 const root = document.documentElement;
 const element = (id) => document.getElementById(id);
 
@@ -103,7 +103,7 @@ function isStale() {
 function showButtons() {
   const ready = Boolean(state.leader) && isAnyWeight();
   for (const id of ['react', 'show-eight', 'another']) element(id).disabled = !ready;
-  for (const id of ['add-key', 'reread', 'save', 'place']) element(id).disabled = !state.leader;
+  for (const id of ['add-key', 'reread', 'place']) element(id).disabled = !state.leader;
   element('place').hidden = !state.leader || !state.model.accepts_follower_start;
   const answered = state.takes.length > 0;
   const stale = isStale();
@@ -210,7 +210,7 @@ function showLeader() {
   root.dataset.frames = motion.frames;
 }
 
-// Shows everything anew, after undo or an opened session.
+// Shows everything anew, after undo.
 function showWork() {
   stopCalls();
   showFields();

@@ -3,7 +3,7 @@
 // {joint, frame, position, softness}. The functions take the settings, of which they read or change
 // `pins`.
 const MAX_PINS = 64;  // the server's limit for one request
-const PIN_METRES = 1000;  // largest coordinate in links and sessions
+const PIN_METRES = 1000;  // largest coordinate in links
 
 const pinAt = (all, joint, frame) =>
     all.pins.find((pin) => pin.joint === joint && pin.frame === frame);

@@ -2,7 +2,7 @@
 // Label curves: for each class a list of points [frame, weight] with ascending frames, linear between
 // points and constant outside them. A class without points has the weight of its slider in every
 // frame. The functions take the settings, of which they read or change `labels` and `curves`.
-const MAX_POINTS = 500;  // of one curve in a link or a session
+const MAX_POINTS = 500;  // of one curve in a link
 
 const curveOf = (all, name) => all.curves[name] ?? [];
 const isCurved = (all) => Object.values(all.curves).some((points) => points.length > 0);

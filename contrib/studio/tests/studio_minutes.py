@@ -161,18 +161,12 @@ def export(me):
     me.page.wait_until("/\\.glb$/.test(document.documentElement.dataset.downloaded)")
 
 
-def save_work(me):
-    me.key("s", 2)
-    me.page.wait_until("/session\\.json$/.test(document.documentElement.dataset.downloaded)")
-
-
 STEPS = (("Open a motion", open_motion), ("Look at it: orbit, play, pause", look),
          ("Get a first reaction", first_reaction), ("Choose among eight answers", choose_take),
          ("Change the reaction over time", change_over_time), ("Place and turn the character", place),
          ("Put a hand on a spot", pin_a_hand),
          ("Keep the beginning, try other endings", redo_the_end), ("Undo and redo", undo_and_redo),
-         ("Put it on a character", on_character), ("Export for an engine", export),
-         ("Save the work", save_work))
+         ("Put it on a character", on_character), ("Export for an engine", export))
 
 
 def run(page):

@@ -111,10 +111,7 @@ class StudioTest(PageTest):
         self.assertEqual(page.state()["failed"], "false", page.text("#status"))
         return page.evaluate("window.saved.pop()")
 
-    def save_session(self, page):
-        return self.saved(page, lambda: self.key(page, "s", modifiers=2))
-
-    def open_text(self, page, text, name="work.session.json"):
+    def open_text(self, page, text, name):
         """Opens a text as a file; returns what the page tells of it."""
         page.evaluate("tell('opening')")
         page.evaluate(f"attempt(takeFile)(new File([{json.dumps(text)}], {json.dumps(name)}))")

@@ -1,5 +1,5 @@
 """The studio's tools in a real browser against a real server: gallery, curves, start, keeping a
-beginning, undo, sessions, rigs."""
+beginning, undo, rigs."""
 
 import contextlib
 import json
@@ -347,87 +347,6 @@ class ToolsTest(StudioTest):
         self.key(page, "z", modifiers=2)
         page.evaluate("keepFrames(10)")
         self.assertTrue(page.evaluate("element('redo').disabled"))
-
-    # Sessions.
-
-    def test_session_restores_everything_in_another_browser(self):
-        page = self.open_still(width=1200, height=900)
-        self.drop(page)
-        page.evaluate("settings.labels = {hug: 1}; settings.curves = {push: [[10, 0], [50, 0.5]]};"
-                      "changed('test')")
-        self.press(page, "show-eight")
-        page.click("#answers .answer:nth-child(2)")
-        page.evaluate("keepFrames(30); turnStart(170)")
-        self.assertEqual(page.evaluate("settings.keep"), 0)
-        page.evaluate("keepFrames(20);"
-                      "state.rig = {name: 'rig.bvh', bytes: new Uint8Array([1, 2, 255]).buffer};"
-                      "changed('test')")
-        name, text = self.save_session(page)
-        self.assertEqual(name, "visitor's hug.session.json")
-        wanted = page.evaluate("JSON.stringify([{...settings, leader: ''}, state.leader.file])")
-        shown = self.shown(page)
-        self.browser.forget()
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / name
-            path.write_text(text, encoding="utf-8")
-            again = self.open_still(width=1200, height=900)
-            self.choose_file(again, "#open-file", path)
-            again.wait_until("state.takes.length === 1 || "
-                             "document.documentElement.dataset.failed === 'true'")
-        self.assertEqual(again.state()["failed"], "false", again.text("#status"))
-        self.assertEqual(again.evaluate("JSON.stringify([{...settings, leader: ''}, state.leader.file])"),
-                         wanted)
-        np.testing.assert_array_equal(self.shown(again), shown)
-        self.assertEqual(again.evaluate("[state.rig.name, ...new Uint8Array(state.rig.bytes)]"),
-                         ["rig.bvh", 1, 2, 255])
-        self.assertEqual(json.loads(self.save_session(again)[1]), json.loads(text))
-        self.key(again, "z", modifiers=2)  # one step
-        self.assertIsNone(again.evaluate("state.leader"))
-        self.key(again, "y", modifiers=2)
-        np.testing.assert_array_equal(self.shown(again), shown)
-
-    def test_invalid_sessions_are_rejected_and_change_nothing(self):
-        page = self.open_still(HUG, width=1200, height=900)
-        self.react(page)
-        _, text = self.save_session(page)
-        valid = json.loads(text)
-        before = page.evaluate("JSON.stringify([settings, seedsOf(state.takes)])")
-
-        def changed(path, value):
-            session = json.loads(text)
-            *parents, last = path
-            part = session
-            for name in parents:
-                part = part[name]
-            if value is None:
-                del part[last]
-            else:
-                part[last] = value
-            return json.dumps(session)
-        short = valid["answer"]["positions"][:16]
-        for broken, message in (
-                (text[:len(text) // 2], "session: expected JSON, got"),
-                (changed(["version"], 3), "version: expected 2; another studio has saved this session, got 3"),
-                (changed(["leader"], None), "leader: expected an object, got nothing"),
-                (changed(["leader", "bytes"], "!"), 'leader.bytes: expected base64, got "!"'),
-                (changed(["leader", "bytes"], "anVuaw=="), "hug.bvh:1: "),
-                (changed(["settings"], None), "settings: expected a text, got nothing"),
-                (changed(["answer", "positions"], short), "answer.positions: expected 4095 values"),
-                (changed(["answer", "seed"], -1), "answer.seed: expected a whole number"),
-                (changed(["answer", "grade", "twisted"], 2), "answer.grade.twisted: expected a number"),
-                (changed(["rig"], {"name": ""}), "rig.name: expected a text"),
-                ('{"format": "duet-session"}', "version: expected 2"),
-                ("", "file: "), ("{}", "")):
-            with self.subTest(broken=broken[-60:], message=message):
-                told = self.open_text(page, broken)
-                self.assertEqual(page.state()["failed"], "true", told)
-                if message and broken:
-                    self.assertTrue(told.startswith(message), told)
-                self.assertEqual(page.evaluate("JSON.stringify([settings, seedsOf(state.takes)])"),
-                                 before)
-        self.open_text(page, text)  # twice is harmless
-        self.open_text(page, text)
-        self.assertEqual(page.state()["failed"], "false", page.text("#status"))
 
     # Sizes.
 
