@@ -86,7 +86,7 @@ async function react(count) {
     const takes = await Promise.all([first, ...others]);
     if (call.signal.aborted) return;
     state.call = null;
-    const chosen = galleryOrder(takes, gallery.order)[0];
+    const chosen = galleryOrder(takes)[0];
     Object.assign(state, {takes, chosen, asked});
     if (count > 1) settings.seed = takes[chosen].seed;
     await finish((performance.now() - begun) / 1000);

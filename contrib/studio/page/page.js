@@ -398,7 +398,6 @@ function followStage() {
   const frame = frameNow();
   timeline.showFrame(frame);
   if (isCurved(settings)) followFrame();
-  drawGallery();
   marker.draw();
   pinHandles.draw();
 }
@@ -428,7 +427,7 @@ async function start() {
   connectFiles();
   connectSettings();
   connectAsking();
-  connectGallery(choose);
+  connectGallery();
   connectTimeline();
   connectStart();
   connectPins();
