@@ -66,37 +66,36 @@ function readCurve(text) {
   }
 }
 
-// The lanes below the scene: a curve for each class. A click adds a point, dragging moves it. With
-// keys: Enter adds a point at the current frame, arrows move the focused point, Delete removes it.
+// The lanes below the scene: a curve for each class. A click adds a point, dragging moves it, a right
+// click removes it. The slider of a class sets a point exactly, and by keys.
 const LANE_INSET = 8;      // half of the thumb of the timeline, which the lanes are aligned with
 const LANE_MARGIN = 6;     // above and below the greatest weights
 const GRIP_PIXELS = {mouse: 9, pen: 12, touch: 20};
 const WEIGHT_STEP = 0.05;
+const HOLD_PIXELS = 3;     // a smaller movement of a point that is held does not move it
 
 // A weight as the sliders step it.
 const stepped = (weight) => rounded(Math.round(weight / WEIGHT_STEP) * WEIGHT_STEP, 2);
 
 class Lane {
-  // Calls `owner.select(name, frame)` and `owner.changed(name)`.
-  constructor(name, owner) {
+  // Calls `changed(what)` after each change of the curve and `ended()` after a gesture.
+  constructor(name, changed, ended) {
     this.name = name;
     this.text = name.replaceAll('_', ' ');
-    this.owner = owner;
-    this.held = null;  // the frame of the point that is dragged
+    this.changed = changed;
     this.node = Object.assign(document.createElement('div'), {className: 'lane'});
     this.title = Object.assign(document.createElement('span'), {className: 'lane-name'});
     this.value = Object.assign(document.createElement('output'), {className: 'lane-value'});
-    this.svg = svgItem('svg', {tabindex: 0, role: 'group', 'aria-label':
-      `Curve of ${this.text}: Enter adds a point at the current frame`});
+    this.svg = svgItem('svg', {role: 'img', 'aria-label': `Curve of ${this.text}`});
     this.kept = svgItem('rect', {class: 'kept', x: 0, y: 0, height: '100%'});
     this.zero = svgItem('line', {class: 'zero'});
     this.line = svgItem('polyline', {class: 'curve'});
     this.head = svgItem('line', {class: 'playhead', y1: 0, y2: '100%'});
-    this.points = [];
-    this.svg.append(this.kept, this.zero, this.line, this.head);
+    this.points = svgItem('g', {});
+    this.svg.append(this.kept, this.zero, this.line, this.head, this.points);
     this.node.append(this.title, this.svg, this.value);
     this.title.textContent = this.text;
-    this.connect();
+    this.connect(ended);
   }
 
   get frames() { return state.leader.motion.frames; }
@@ -141,29 +140,9 @@ class Lane {
     this.node.classList.toggle('curved', curve.length > 0);
     this.node.classList.toggle('idle', curve.length === 0 && constant === 0);
     this.kept.setAttribute('width', settings.keep > 0 ? this.x(settings.keep - 1) : 0);
-    this.drawPoints();
+    this.points.replaceChildren(...curve.map(([frame, weight]) => svgItem(
+        'circle', {class: 'point', r: 5.5, cx: this.x(frame), cy: this.y(weight)})));
     this.showFrame(frameNow());
-  }
-
-  // Keeps the circles, so that the focus stays on a point while it moves.
-  drawPoints() {
-    const {curve} = this;
-    while (this.points.length > curve.length) this.points.pop().remove();
-    while (this.points.length < curve.length) {
-      const point = svgItem('circle', {class: 'point', tabindex: 0, role: 'slider', r: 5.5,
-                                       'aria-valuemin': -MAX_WEIGHT, 'aria-valuemax': MAX_WEIGHT});
-      this.points.push(point);
-      this.svg.append(point);
-    }
-    curve.forEach(([frame, weight], i) => {
-      const point = this.points[i];
-      point.setAttribute('cx', this.x(frame));
-      point.setAttribute('cy', this.y(weight));
-      point.setAttribute('aria-label', `${this.text} at frame ${frame}`);
-      point.setAttribute('aria-valuenow', weight);
-      point.dataset.frame = frame;
-      point.classList.toggle('selected', this.owner.isSelected(this.name, frame));
-    });
   }
 
   showFrame(frame) {
@@ -184,172 +163,67 @@ class Lane {
     return found;
   }
 
-  focus(frame) {
-    this.points.find((point) => Number(point.dataset.frame) === frame)?.focus({preventScroll: true});
+  // A point has changed: shows its frame.
+  show(frame) {
+    seekAll(frame);
+    this.changed(`curve of ${this.text}`);
   }
 
-  remove(frame) {
-    const index = this.curve.findIndex(([at]) => at === frame);
-    removePoint(settings, this.name, frame);
-    this.owner.select(null);
-    this.owner.changed(this.name, 'remove a point of');
-    (this.points[Math.min(index, this.points.length - 1)] ?? this.svg).focus({preventScroll: true});
-  }
-
-  move(from, frame, weight) {
-    const to = movePoint(settings, this.name, from, frame, weight, this.frames);
-    this.owner.select(this.name, to);
-    this.owner.changed(this.name);
-    return to;
-  }
-
-  add(frame, weight) {
-    setPoint(settings, this.name, frame, weight);
-    this.owner.select(this.name, frame);
-    this.owner.changed(this.name);
-    this.focus(frame);
-  }
-
-  connect() {
+  connect(ended) {
     const {svg} = this;
+    let [held, from] = [null, null];  // the frame of the point that is dragged, and where it was taken
     const place = (event) => {
       const box = svg.getBoundingClientRect();
       return [event.clientX - box.left, event.clientY - box.top];
     };
     connectDrag(svg, (event) => {
       if (!this.width) return false;
-      const [x, y] = place(event);
-      this.held = this.pointAt(event, x, y);
-      if (this.held === null) {
-        this.held = this.frameAt(x);
-        this.add(this.held, this.weightAtPixel(y));
-      } else {
-        this.owner.select(this.name, this.held);
-        this.focus(this.held);
+      const [x, y] = from = place(event);
+      held = this.pointAt(event, x, y);
+      if (held === null) {
+        held = this.frameAt(x);
+        setPoint(settings, this.name, held, this.weightAtPixel(y));
       }
-      this.from = [x, y];
+      this.show(held);
       return true;
     }, (event) => {
       const [x, y] = place(event);
-      if (this.from && Math.hypot(x - this.from[0], y - this.from[1]) < 3) return;
-      this.from = null;
-      this.held = this.move(this.held, this.frameAt(x), this.weightAtPixel(y));
-    }, () => {
-      this.held = null;
-      this.owner.ended();
-    });
+      if (from && Math.hypot(x - from[0], y - from[1]) < HOLD_PIXELS) return;
+      from = null;
+      held = movePoint(settings, this.name, held, this.frameAt(x), this.weightAtPixel(y), this.frames);
+      this.show(held);
+    }, ended);
     svg.addEventListener('contextmenu', (event) => {
       const frame = this.pointAt(event, ...place(event));
       if (frame === null) return;
       event.preventDefault();
-      this.remove(frame);
+      removePoint(settings, this.name, frame);
+      this.changed(`remove a point of ${this.text}`);
     });
-    svg.addEventListener('focusin', ({target}) => {
-      if (target.dataset.frame) this.owner.select(this.name, Number(target.dataset.frame));
-    });
-    svg.addEventListener('keydown', (event) => this.key(event));
-  }
-
-  key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const frame = event.target.dataset.frame === undefined ? null : Number(event.target.dataset.frame);
-    if (frame === null) {
-      if (event.key !== 'Enter') return;
-      const now = frameNow();
-      this.add(now, rounded(weightAt(settings, this.name, now), 2));
-    } else {
-      const weight = weightAt(settings, this.name, frame);
-      const step = event.shiftKey ? 10 : 1;
-      const limited = (value) => Math.max(-MAX_WEIGHT, Math.min(MAX_WEIGHT, rounded(value, 2)));
-      const keys = {
-        ArrowLeft: () => this.move(frame, frame - step, weight),
-        ArrowRight: () => this.move(frame, frame + step, weight),
-        ArrowUp: () => this.move(frame, frame, limited(weight + step * WEIGHT_STEP)),
-        ArrowDown: () => this.move(frame, frame, limited(weight - step * WEIGHT_STEP)),
-        Delete: () => this.remove(frame),
-        Backspace: () => this.remove(frame),
-      };
-      if (!keys[event.key]) return;
-      keys[event.key]();
-      this.owner.ended();
-    }
-    event.preventDefault();
-    event.stopPropagation();
   }
 }
 
-// All lanes, and the fields of the selected point.
+// All lanes.
 class Timeline {
-  // Calls `changed(what)` after each change of a curve and `ended()` after a gesture.
+  // As Lane.
   constructor(changed, ended) {
-    this.lanes = [];
-    this.selected = null;  // {name, frame}
-    this.tell = changed;
-    this.ended = ended;
+    Object.assign(this, {lanes: [], changed, ended});
     new ResizeObserver(() => this.draw()).observe(element('lanes'));
-    element('point-frame').addEventListener('change', () => this.edit());
-    element('point-weight').addEventListener('input', () => this.edit());
-    element('point-remove').addEventListener('click', () => {
-      const {name, frame} = this.selected;
-      this.laneOf(name).remove(frame);
-    });
     element('curves').addEventListener('toggle', () => this.draw());
   }
 
   laneOf(name) { return this.lanes.find((lane) => lane.name === name); }
-  isSelected(name, frame) { return this.selected?.name === name && this.selected.frame === frame; }
 
   // One lane for each class of the model.
   build(classes) {
     if (this.lanes.map((lane) => lane.name).join() === classes.join()) return;
-    this.lanes = classes.map((name) => new Lane(name, this));
+    this.lanes = classes.map((name) => new Lane(name, this.changed, this.ended));
     element('lanes').replaceChildren(...this.lanes.map((lane) => lane.node));
-  }
-
-  changed(name, verb = 'curve of') { this.tell(`${verb} ${name.replaceAll('_', ' ')}`); }
-
-  select(name, frame) {
-    if (name === null || this.isSelected(name, frame)) {
-      if (name === null) this.selected = null;
-    } else {
-      this.selected = {name, frame};
-      seekAll(frame);
-    }
-    this.showSelected();
-  }
-
-  showSelected() {
-    const {selected} = this;
-    const point = selected && curveOf(settings, selected.name).find(([at]) => at === selected.frame);
-    if (!point) this.selected = null;
-    element('point').hidden = !point;
-    element('curves-hint').hidden = Boolean(point);
-    for (const lane of this.lanes) {
-      for (const node of lane.points) {
-        node.classList.toggle('selected', this.isSelected(lane.name, Number(node.dataset.frame)));
-      }
-    }
-    if (!point) return;
-    element('point-name').textContent = selected.name.replaceAll('_', ' ');
-    element('point-frame').max = state.leader.motion.frames - 1;
-    for (const [id, value] of [['point-frame', point[0]], ['point-weight', point[1]]]) {
-      if (document.activeElement !== element(id)) element(id).value = value;
-    }
-  }
-
-  // Takes the fields of the selected point.
-  edit() {
-    const fields = ['point-frame', 'point-weight'].map(element);
-    if (!this.selected || fields.some((field) => field.value === '' || !field.checkValidity())) return;
-    const [frame, weight] = fields.map((field) => Number(field.value));
-    const {name, frame: from} = this.selected;
-    this.laneOf(name).move(from, Math.round(frame), weight);
   }
 
   draw() {
     if (!state.leader) return;
     for (const lane of this.lanes) lane.draw();
-    this.showSelected();
   }
 
   showFrame(frame) {
