@@ -239,10 +239,7 @@ function placeStart(shown) {
 
 function connectStart() {
   const isShown = () => !element('start-marker').hasAttribute('hidden');
-  element('place').addEventListener('click', () => {
-    placeStart(!isShown());
-    if (isShown()) marker.ring.focus({preventScroll: true});
-  });
+  element('place').addEventListener('click', () => placeStart(!isShown()));
   element('turn').addEventListener('change', () => {
     const {value} = element('turn');
     if (!state.leader || !element('turn').checkValidity()) return;

@@ -23,13 +23,8 @@ function removePin(all, joint, frame) {
   all.pins = all.pins.filter((pin) => pin.joint !== joint || pin.frame !== frame);
 }
 
-// Changes fields of the pin at an index. Returns false if its joint has a pin in the new frame.
-function changePin(all, index, fields) {
-  const changed = {...all.pins[index], ...fields};
-  const same = pinAt(all, changed.joint, changed.frame);
-  if (same && same !== all.pins[index]) return false;
-  all.pins = all.pins.map((pin, i) => (i === index ? changed : pin));
-  return true;
+function soften(all, index, softness) {
+  all.pins = all.pins.map((pin, i) => (i === index ? {...pin, softness} : pin));
 }
 
 // right_hand@40=0.2,1.3,0.5,0.25, a joint, a frame, a place and a softness.
@@ -46,7 +41,7 @@ function readPin(all, text) {
   if (!isRight) return;
   setPin(all, joint, Number(frame), [x, y, z]);
   const index = all.pins.findIndex((pin) => pin.joint === joint && pin.frame === Number(frame));
-  if (index >= 0) changePin(all, index, {softness});
+  if (index >= 0) soften(all, index, softness);
 }
 
 // The pins that a request for the frames from `first` on contains; `kept`: of frames that stay, pins
@@ -66,9 +61,7 @@ function describePin(take, {joint, frame, position}) {
 }
 
 // Handles of the follower's joints over the scene, and the list of pins. Dragging a joint pins it in
-// the frame on display. Arrow keys move a pin, with Shift away from the camera and towards it; Delete
-// removes it.
-const PIN_STEP_METRES = 0.05;
+// the frame on display.
 const HANDLE_PIXELS = 7;
 
 const jointText = (joint) => joint.replaceAll('_', ' ');
@@ -77,7 +70,6 @@ class PinHandles {
   // `onChange(what)` is called after each change, `onEnd()` after each drag.
   constructor(svg, list, onChange, onEnd) {
     Object.assign(this, {svg, list, onChange, onEnd, handles: new Map(), rows: []});
-    svg.addEventListener('keydown', (event) => this.key(event));
   }
 
   get isShown() { return !this.svg.hasAttribute('hidden'); }
@@ -115,7 +107,7 @@ class PinHandles {
     if (handle) return handle;
     const group = svgItem('g', {});
     handle = {group, way: svgItem('line', {class: 'way'}),
-              grip: svgItem('circle', {class: 'joint', r: HANDLE_PIXELS, tabindex: 0, role: 'button'})};
+              grip: svgItem('circle', {class: 'joint', r: HANDLE_PIXELS})};
     group.append(handle.way, handle.grip);
     this.svg.append(group);
     this.handles.set(joint, handle);
@@ -137,31 +129,8 @@ class PinHandles {
       if (theatre.player.playing) theatre.pause();
       const at = this.at(event, place);
       off = place.map((value, i) => value - at[i]);
-      grip.focus();
       return true;
     }, (event) => this.pin(joint, this.at(event, place).map((value, i) => value + off[i])), () => this.onEnd());
-  }
-
-  key(event) {
-    const {joint} = event.target.dataset;
-    if (!joint) return;
-    const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
-    const way = arrows[event.key];
-    if (event.key === 'Delete' || event.key === 'Backspace') this.remove(joint, frameNow());
-    else if (way) this.step(joint, way, event.shiftKey);
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
-  }
-
-  step(joint, [right, up], isDeep) {
-    const place = this.handlePlace(joint);
-    if (!place) return;
-    const [toRight, upwards, away] = viewAxes(place);
-    const axis = isDeep ? away : toRight;
-    const [a, b] = isDeep ? [up, 0] : [right, up];
-    this.pin(joint, place.map((value, i) => value + PIN_STEP_METRES * (a * axis[i] + b * upwards[i])));
-    this.onEnd();
   }
 
   draw() {
@@ -186,8 +155,6 @@ class PinHandles {
     handle.group.setAttribute('class', pin ? 'pinned' : '');
     handle.grip.setAttribute('cx', x);
     handle.grip.setAttribute('cy', y);
-    handle.grip.setAttribute('aria-label', `${jointText(joint)}: arrow keys ${
-        pin ? 'move its pin' : 'pin it in this frame'}`);
     for (const [name, value] of [['x1', fromX], ['y1', fromY], ['x2', x], ['y2', y]]) {
       handle.way.setAttribute(name, value);
     }
@@ -198,72 +165,40 @@ class PinHandles {
   addRow() {
     const row = document.createElement('li');
     const go = Object.assign(document.createElement('button'), {type: 'button', className: 'pin-name'});
-    const field = (text, properties) => {
-      const label = Object.assign(document.createElement('label'), {textContent: text});
-      const input = Object.assign(document.createElement('input'), {type: 'number', ...properties});
-      label.append(input);
-      return [label, input];
-    };
-    const [frameLabel, frame] = field('frame ', {min: 0, step: 1});
-    const [softLabel, softness] = field('softness ', {min: 0, max: 1, step: 0.05});
+    const label = Object.assign(document.createElement('label'), {textContent: 'softness '});
+    const softness = Object.assign(document.createElement('input'), {type: 'number', min: 0, max: 1, step: 0.05});
+    label.append(softness);
     const remains = document.createElement('output');
     const drop = Object.assign(document.createElement('button'), {type: 'button', textContent: 'Delete'});
-    row.append(go, frameLabel, softLabel, remains, drop);
+    row.append(go, label, remains, drop);
     const index = this.rows.length;
     const pin = () => settings.pins[index];
-    const change = (input, name) => {
-      if (input.value === '' || !input.checkValidity()) return;
-      if (!changePin(settings, index, {[name]: Number(input.value)})) {
-        tell(`frame: expected one in which ${jointText(pin().joint)} has no pin, got ${input.value}`, true);
-        return;
-      }
-      this.onChange(`${name} of a pin`);
-    };
     go.addEventListener('click', () => this.goTo(pin()));
-    frame.addEventListener('change', () => change(frame, 'frame'));
-    softness.addEventListener('change', () => change(softness, 'softness'));
+    softness.addEventListener('change', () => {
+      if (softness.value === '' || !softness.checkValidity()) return;
+      soften(settings, index, Number(softness.value));
+      this.onChange('softness of a pin');
+    });
     drop.addEventListener('click', () => this.remove(pin().joint, pin().frame));
-    this.rows.push({row, go, frame, softness, remains});
+    this.rows.push({row, go, softness, remains});
     this.list.append(row);
   }
 
-  goTo({joint, frame}) {
+  goTo({frame}) {
     showPins(true);
     seekAll(frame);
-    theatre.draw();
-    this.draw();
-    this.handles.get(joint)?.grip.focus({preventScroll: true});
   }
 
   drawList() {
     while (this.rows.length > settings.pins.length) this.rows.pop().row.remove();
     while (this.rows.length < settings.pins.length) this.addRow();
-    const show = (input, value) => {
-      if (document.activeElement !== input) input.value = value;
-    };
     settings.pins.forEach((pin, i) => {
-      const {go, frame, softness, remains} = this.rows[i];
-      go.textContent = jointText(pin.joint);
-      frame.max = (state.leader?.motion.frames ?? 1) - 1;
-      show(frame, pin.frame);
-      show(softness, pin.softness);
+      const {go, softness, remains} = this.rows[i];
+      go.textContent = `${jointText(pin.joint)}, frame ${pin.frame}`;
+      if (document.activeElement !== softness) softness.value = pin.softness;
       remains.value = describePin(this.take, pin);
     });
   }
-}
-
-// The directions to the right, upwards and away from the camera at a place, of length 1.
-function viewAxes(place) {
-  const [x, y] = theatre.project(...place);
-  const axis = (dx, dy) => {
-    const at = theatre.pointAt(x + dx, y + dy, place);
-    const way = at.map((value, i) => value - place[i]);
-    const length = Math.hypot(...way);
-    return way.map((value) => value / length);
-  };
-  const [right, up] = [axis(16, 0), axis(0, -16)];
-  return [right, up, [up[1] * right[2] - up[2] * right[1], up[2] * right[0] - up[0] * right[2],
-                      up[0] * right[1] - up[1] * right[0]]];
 }
 
 // Shows or hides the handles.
@@ -278,10 +213,7 @@ function showPins(shown) {
 }
 
 function connectPins() {
-  element('pin').addEventListener('click', () => {
-    showPins(!pinHandles.isShown);
-    if (pinHandles.isShown) element('pin-handles').querySelector('.joint')?.focus({preventScroll: true});
-  });
+  element('pin').addEventListener('click', () => showPins(!pinHandles.isShown));
   element('pin-add').addEventListener('click', () => {
     const joint = element('pin-joint').value;
     const place = pinHandles.handlePlace(joint);
@@ -289,7 +221,6 @@ function connectPins() {
     showPins(true);
     pinHandles.pin(joint, place);
     pinHandles.onEnd();
-    pinHandles.goTo(pinAt(settings, joint, frameNow()));
   });
   element('pins-clear').addEventListener('click', () => {
     settings.pins = [];

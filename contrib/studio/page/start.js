@@ -1,12 +1,10 @@
 'use strict';
 // The follower's start: a place on the floor, and optionally a direction. The visitor drags a marker
-// in the scene, moves it by keys, or fills in fields. The marker shows a pose, which is sent and met
+// in the scene or fills in fields. The marker shows a pose, which is sent and met
 // exactly: that of the shown answer's first frame, else the leader's. A place that is only filled in
 // is sent as the root's position, which leaves the pose to the model and is met within decimetres.
 const RING_METRES = 0.3;
 const ARROW_METRES = 0.55;
-const STEP_METRES = 0.05;
-const STEP_DEGREES = 5;
 const FIRST_DISTANCE = 1;  // metres in front of the leader, where nothing else is known
 
 const radians = (degrees) => degrees * Math.PI / 180;
@@ -103,20 +101,19 @@ class StartMarker {
     this.onChange = onChange;
     this.onEnd = onEnd;
     this.body = this.add('path', 'body');
-    this.ring = this.add('path', 'ring', 'Follower\'s start: arrow keys move it');
+    this.ring = this.add('path', 'ring');
     this.arrow = this.add('path', 'arrow');
-    this.knob = this.add('circle', 'knob', 'Direction of the follower\'s start: arrow keys turn it');
+    this.knob = this.add('circle', 'knob');
     this.knob.setAttribute('r', 9);
     this.connect(this.ring, (at) => moveStart(at[0] - this.grip[0], at[1] - this.grip[1]));
     this.connect(this.knob, ([x, z]) => {
       const {root} = startNow(state.leader);
       turnStart(Math.atan2(x - root[0], z - root[2]) * 180 / Math.PI);
     });
-    svg.addEventListener('keydown', (event) => this.key(event));
   }
 
-  add(kind, name, label) {
-    const item = svgItem(kind, {class: name, ...(label && {tabindex: 0, role: 'button', 'aria-label': label})});
+  add(kind, name) {
+    const item = svgItem(kind, {class: name});
     this.svg.append(item);
     return item;
   }
@@ -133,7 +130,6 @@ class StartMarker {
       if (!at) return false;
       const {root} = startNow(state.leader);
       this.grip = [at[0] - root[0], at[1] - root[2]];
-      item.focus();
       return true;
     }, (event) => {
       const at = this.floorBelow(event);
@@ -141,33 +137,6 @@ class StartMarker {
       move(at);
       this.onChange();
     }, () => this.onEnd());
-  }
-
-  key(event) {
-    const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
-    const way = arrows[event.key];
-    if (event.key === 'Delete' || event.key === 'Backspace') freeStart();
-    else if (way) this.step(way, event);
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
-    this.onChange();
-    this.onEnd();
-  }
-
-  step([right, down], {target, shiftKey}) {
-    const {root, heading} = startNow(state.leader);
-    if (target === this.knob || shiftKey) {
-      turnStart(heading + STEP_DEGREES * (right || -down));
-      return;
-    }
-    // A step on the floor in the direction of the key on the screen.
-    const [x, y] = theatre.project(root[0], theatre.floorHeight, root[2]);
-    const at = theatre.floorAt(x + 8 * right, y + 8 * down);
-    if (!at) return;
-    const [dx, dz] = [at[0] - root[0], at[1] - root[2]];
-    const scale = STEP_METRES / Math.max(1e-6, Math.hypot(dx, dz));
-    moveStart(root[0] + dx * scale, root[2] + dz * scale);
   }
 
   draw() {
@@ -191,7 +160,5 @@ class StartMarker {
         .map(([parent, child]) => path([joint(parent), joint(child)])).join(''));
     const isSet = Boolean(settings.start || settings.turn !== '');
     this.svg.classList.toggle('set', isSet);
-    this.ring.setAttribute('aria-description', `x ${rounded(root[0], 2)}, z ${
-        rounded(root[2], 2)} metres, ${rounded(heading, 0)} degrees`);
   }
 }

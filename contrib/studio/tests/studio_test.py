@@ -222,20 +222,16 @@ class ToolsTest(StudioTest):
         heading = page.evaluate("headingOf(state.leader.motion, state.takes[0].positions)")
         self.assertAlmostEqual(abs((heading - after + 180) % 360 - 180), 0, delta=3)
 
-    def test_start_is_placed_by_keys_and_freed(self):
+    def test_start_is_restored_by_a_link_and_freed(self):
         page = self.open_still(HUG, width=1200, height=900)
-        self.key(page, "p")
         before = page.evaluate("startNow(state.leader)")
-        self.key(page, "ArrowRight")
-        after = page.evaluate("startNow(state.leader)")
-        self.assertAlmostEqual(np.hypot(after["root"][0] - before["root"][0],
-                                        after["root"][2] - before["root"][2]), 0.05, places=2)
-        self.key(page, "ArrowRight", modifiers=8)
-        self.assertAlmostEqual(page.evaluate("Number(settings.turn)"),
-                               (before["heading"] + 5 + 180) % 360 - 180, places=0)
+        self.key(page, "p")
+        start = page.evaluate(IN_MARKER.format(part="ring"))
+        page.drag(start, (start[0] + 60, start[1] + 20))
+        self.assertGreater(abs(page.evaluate("startNow(state.leader).root[0]") - before["root"][0]), 0.01)
         link = page.evaluate("location.hash")
         wanted = page.evaluate("[settings.start, settings.turn, settings.pose]")
-        self.key(page, "Delete")
+        page.evaluate("element('free-start').click()")
         self.assertEqual(page.evaluate("[settings.start, settings.turn, settings.pose]"), ["", "", []])
         again = self.open_still(link)
         self.assertEqual(again.evaluate("[settings.start, settings.turn, settings.pose]"), wanted)
