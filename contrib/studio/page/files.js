@@ -19,27 +19,27 @@ function skeletonOf(model) {
   return model.joint_names.map((name, i) => `${encodeURIComponent(name)}:${parents.get(i) ?? ''}`).join();
 }
 
-// Reads a leader with the current settings. Returns {name, file, bytes, motion, notes, reading}.
-async function readLeader(name, bytes) {
-  const query = new URLSearchParams({name: safeName(name)});
-  for (const setting of READING) {
-    const values = setting === 'joint_map' ? lines(settings.joint_map) : [settings[setting]];
-    for (const value of values.filter(Boolean)) query.append(setting, value);
-  }
-  const skeleton = skeletonOf(modelNamed(settings.model));
-  const response = await fetchFrom(`/read?${query}&skeleton=${skeleton}`, {method: 'POST', body: bytes});
+// Reads the leader of a file in the joints of a model: {notes, motion}. `query`: settings for reading it.
+async function readMotion(name, bytes, model, query = []) {
+  const parts = new URLSearchParams([['name', safeName(name)], ...query]);
+  const response = await fetchFrom(`/read?${parts}&skeleton=${skeletonOf(model)}`, {method: 'POST', body: bytes});
   if (!response.ok) throw new CallError(await messageIn(response));
   const {notes, motion} = await response.json();
-  if (motion.leader.length < LEAST_FRAMES) {
+  return {notes, motion: {joint_names: motion.joint_names, frame_rate_hz: motion.frame_rate_hz,
+                          frames: motion.leader.length, positions: Float32Array.from(motion.leader.flat(2))}};
+}
+
+// Reads a leader with the current settings. Returns {name, file, bytes, motion, notes, reading}.
+async function readLeader(name, bytes) {
+  const query = READING.flatMap((setting) => (
+    setting === 'joint_map' ? lines(settings.joint_map) : [settings[setting]]).filter(Boolean).map(
+      (value) => [setting, value]));
+  const {notes, motion} = await readMotion(name, bytes, modelNamed(settings.model), query);
+  if (motion.frames < LEAST_FRAMES) {
     throw new Error(`${name}: expected a motion of at least ${LEAST_FRAMES} frames, got ${
-        motion.leader.length}. A single pose has no reaction.`);
+        motion.frames}. A single pose has no reaction.`);
   }
-  return {
-    name, bytes, notes, file: fingerprint(bytes),
-    reading: readingOf(settings),
-    motion: {joint_names: motion.joint_names, frame_rate_hz: motion.frame_rate_hz,
-             frames: motion.leader.length, positions: Float32Array.from(motion.leader.flat(2))},
-  };
+  return {name, bytes, notes, motion, file: fingerprint(bytes), reading: readingOf(settings)};
 }
 
 // [frames][joints][3]

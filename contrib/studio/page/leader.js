@@ -92,18 +92,6 @@ class Body {
     this.moveAll(pose, joints, (place) => add(centre, rotate(sub(place, centre))));
   }
 
-  // Bends hips and waist by radians, forward and to the left.
-  bend(pose, forward, left) {
-    const hips = this.hips(pose);
-    const rotate = (share) => {
-      const [a, b] = [turning([1, 0, 0], forward * share), turning([0, 0, 1], -left * share)];
-      return (v) => b(a(v));
-    };
-    this.turn(pose, this.upper, hips, rotate(0.5));
-    const above = this.upper.filter((joint) => joint !== this.waist);
-    this.turn(pose, above, this.at(pose, this.waist), rotate(0.5));
-  }
-
   // Moves the pelvis and all above it.
   shift(pose, by) {
     this.moveAll(pose, [...this.pelvis, ...this.upper], (place) => add(place, by));
@@ -127,7 +115,7 @@ class Body {
   }
 }
 
-// The leader of the Spar page. It stands, breathes, walks, bends and plays clips; every change is
+// The leader of the Spar page. It stands, breathes, walks and plays clips; every change is
 // blended.
 const BLEND_SECONDS = 0.2;
 const WALK_SPEED = 1.15;     // metres a second
@@ -136,25 +124,16 @@ const TURN_SPEED = 1.9;      // radians a second
 const EASE_SECONDS = 0.16;   // until walking and turning have their speed
 const STEP_SECONDS = 0.92;   // for a left and a right step
 const STANCE = 0.58;         // share of a step in which the foot stands
-const MAX_BEND = 0.75;       // radians
 
 // A piece of motion, relative to where its first frame stands: poses [joints, 3] at `frameRate`.
-// `loops`: it repeats, and drifts nowhere. `turns`: the leader looks where it ends.
 class Clip {
-  constructor(body, name, poses, frameRate, {loops = false, turns = false} = {}) {
-    Object.assign(this, {name, frameRate, loops, turns});
+  constructor(body, poses, frameRate) {
+    this.frameRate = frameRate;
     const first = body.place(poses[0]);
     this.poses = poses.map((pose) => unplaced(pose, first));
     // How far hands and feet come forward, metres.
     const limbs = body.sides.flatMap(({foot, hands}) => [foot, ...hands]).filter((joint) => joint >= 0);
     this.reach = Math.max(...this.poses.flatMap((pose) => limbs.map((joint) => body.at(pose, joint)[2])));
-    const drift = body.place(this.poses[this.poses.length - 1]);
-    drift.yaw = Math.atan2(Math.sin(drift.yaw), Math.cos(drift.yaw));
-    if (!loops) return;
-    this.poses = this.poses.map((pose, i) => {
-      const share = i / (poses.length - 1);
-      return unplaced(pose, {x: drift.x * share, z: drift.z * share, yaw: drift.yaw * share});
-    });
   }
 
   get seconds() { return (this.poses.length - 1) / this.frameRate; }
@@ -162,8 +141,7 @@ class Clip {
   // The pose at a time, interpolated.
   at(seconds) {
     const length = this.poses.length - 1;
-    const frame = this.loops ? (seconds * this.frameRate) % length
-                             : clamp(seconds * this.frameRate, 0, length);
+    const frame = clamp(seconds * this.frameRate, 0, length);
     const before = Math.min(Math.floor(frame), length - 1);
     const [a, b] = [this.poses[before], this.poses[before + 1]];
     return a.map((value, i) => mix(value, b[i], frame - before));
@@ -181,27 +159,20 @@ class Leader {
     this.speed = this.spin = 0;  // forward in metres a second, to the left in radians a second
     this.wanted = {forward: 0, left: 0};  // -1 to 1, by keys
     this.backs = false;                   // steps back, whatever the keys want
-    this.lean = {forward: 0, left: 0};    // radians, by dragging
-    this.bent = {forward: 0, left: 0, forwardSpeed: 0, leftSpeed: 0};
     this.clip = null;
     this.clipTime = 0;
     this.offset = new Float32Array(this.rest.length);  // from what it does to what it shows
     this.offsetTime = BLEND_SECONDS;
     this.shown = this.source();
-    this.unbent = this.world = placed(this.shown, this.root);
+    this.pose = placed(this.shown, this.root);  // in the world, Float32Array [joints, 3]
   }
 
   // Starts a clip, or ends one with null, blended.
-  // `over`: the time since the clip should have begun, in seconds of the clip.
-  play(clip, over = 0) {
-    if (this.clip) {
-      const here = this.body.place(this.source());
-      this.root = placeWithin(this.root, {...here, yaw: this.clip.turns ? here.yaw : 0});
-    }
-    const world = this.unbent;
+  play(clip) {
+    if (this.clip) this.root = placeWithin(this.root, {...this.body.place(this.source()), yaw: 0});
     this.clip = clip;
-    this.clipTime = over;
-    this.rebase(world);
+    this.clipTime = 0;
+    this.rebase(this.pose);
   }
 
   // Continues from a pose in the world, and forgets it within BLEND_SECONDS.
@@ -211,27 +182,18 @@ class Leader {
     this.offsetTime = 0;
   }
 
-  // The pose in the world, Float32Array [joints, 3].
-  get pose() { return this.world; }
-
   advance(seconds) {
     this.time += seconds;
     this.walk(seconds);
-    this.bendOn(seconds);
     if (this.clip) {
       this.clipTime += seconds;
-      if (!this.clip.loops && this.clipTime >= this.clip.seconds) {
-        const over = this.clipTime - this.clip.seconds;
-        this.clipTime = this.clip.seconds;
-        this.ended?.(this.clip, over);
-      }
+      if (this.clipTime >= this.clip.seconds) this.ended?.();
     }
     this.offsetTime += seconds;
     const left = 1 - smooth(this.offsetTime / BLEND_SECONDS);
     this.shown = this.source();
     if (left > 0) this.shown = this.shown.map((value, i) => value + this.offset[i] * left);
-    this.unbent = placed(this.shown, this.root);
-    this.world = placed(this.finish(this.shown), this.root);
+    this.pose = placed(this.shown, this.root);
   }
 
   walk(seconds) {
@@ -249,19 +211,6 @@ class Leader {
   // From 0, standing, to 1, walking.
   get effort() {
     return clamp(Math.abs(this.speed) / 0.5 + Math.abs(this.spin) / 1.2, 0, 1);
-  }
-
-  // Follows the visitor's hand like a spring.
-  bendOn(seconds) {
-    for (const way of ['forward', 'left']) {
-      for (let rest = seconds; rest > 0; rest -= 0.008) {
-        const dt = Math.min(rest, 0.008);
-        const pull = 160 * (this.lean[way] - this.bent[way]) - 20 * this.bent[`${way}Speed`];
-        this.bent[`${way}Speed`] += pull * dt;
-        this.bent[way] += this.bent[`${way}Speed`] * dt;
-      }
-      this.bent[way] = clamp(this.bent[way], -MAX_BEND, MAX_BEND);
-    }
   }
 
   // What it does now, relative to its root.
@@ -321,17 +270,5 @@ class Leader {
     for (const {shoulder, elbow, hands} of body.sides) {
       body.turn(pose, [elbow, ...hands], body.at(pose, shoulder), turning([1, 0, 0], -0.03 - 0.03 * breath));
     }
-  }
-
-  // Bends the pose; the feet stay.
-  finish(shown) {
-    const {body, rest, bent} = this;
-    if (Math.hypot(bent.forward, bent.left) < 1e-3) return shown;
-    const pose = shown.slice();
-    body.bend(pose, bent.forward, bent.left);
-    body.shift(pose, [-0.12 * Math.sin(bent.left), -0.05 * (1 - Math.cos(2 * bent.forward)),
-                      -0.2 * Math.sin(bent.forward)]);
-    for (const side of body.sides) body.reach(pose, side, rest);
-    return pose;
   }
 }

@@ -27,7 +27,7 @@ class FrameStore {
 // from 0 again.
 class LiveSession {
   constructor(settings, on) {
-    this.settings = settings;  // {model, joints, frameRate, weights, delay, plan}
+    this.settings = settings;  // {model, joints, frameRate, weights, plan, acceptsStart}
     this.on = on;
     this.attempts = 0;
     this.seed = null;  // the server's choice, which a resumed or new session keeps
@@ -76,15 +76,15 @@ class LiveSession {
     // Here and not when it connects: frames are added while the socket opens.
     const wasAwayLong = this.leader.end - this.follower.end > RESUME_SECONDS * settings.frameRate;
     if (wasAwayLong) this.start = this.follower.get(this.follower.end - 1) ?? this.start;
-    if (wasAwayLong || this.follower.end <= settings.delay) this.restart();  // older frames are of no use
+    if (wasAwayLong || this.follower.end === 0) this.restart();  // older frames are of no use
     const {leader, follower} = this;
-    const end = Math.max(0, Math.min(follower.end, leader.end - settings.delay));
+    const end = Math.min(follower.end, leader.end);
     const first = Math.max(follower.first, end - this.kept);
     const start = {
       model: selectorOf(settings.model),
       leader: {joint_names: settings.joints, frame_rate_hz: settings.frameRate, unit: METRES, up_axis: Y_UP},
       label_vector: messageOf(settings.weights), ...(this.seed !== null && {seed: this.seed}),
-      delay_frames: settings.delay, plan_frames: settings.plan,
+      plan_frames: settings.plan,
     };
     // Frames without an answer belong to the start: the server evaluates all of it, whereas it skips
     // evaluations for frames that queue up later.
@@ -125,8 +125,8 @@ class LiveSession {
 
   forget() {
     const behind = Math.min(this.leader.end - this.follower.end, RESUME_SECONDS * this.settings.frameRate + 1);
-    this.leader.keep(this.kept + this.settings.delay + Math.max(0, behind));
-    this.follower.keep(this.kept + this.settings.delay);
+    this.leader.keep(this.kept + Math.max(0, behind));
+    this.follower.keep(this.kept);
     for (const index of this.captures.keys()) {
       if (index >= this.leader.first) break;
       this.captures.delete(index);

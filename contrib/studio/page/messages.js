@@ -54,8 +54,8 @@ const MESSAGES = {
   },
   LiveStart: {
     model: [1, 'ModelSelector'], leader: [2, 'Motion'], label_vector: [3, 'LabelVector'],
-    follower_start: [5, 'FollowerStart'], seed: [7, 'uint64'], delay_frames: [12, 'uint32'],
-    plan_frames: [13, 'uint32'], history: [14, 'LiveHistory'],
+    follower_start: [5, 'FollowerStart'], seed: [7, 'uint64'], plan_frames: [13, 'uint32'],
+    history: [14, 'LiveHistory'],
   },
   LeaderFrames: {
     first_frame: [1, 'uint32'], frame_count: [2, 'uint32'], positions: [3, 'float[]'],

@@ -8,9 +8,9 @@ const PLAN_FRAMES = 8;
 const LONGEST_STEP = 0.25;    // seconds; a tab that slept does not catch up
 const HIDDEN_SECONDS = 2;     // a hidden page ends its session
 const LATE_SECONDS = 1.5;     // in which the slowest answer decides how far behind it is shown
-const PIXELS_TO_BEND = 220;
 const CAMERA_SECONDS = 0.7;
 const SLOW_SECONDS = 0.05;    // between two pictures, on average; below, the picture gets coarser
+const LABEL_SECONDS = 0.3;  // in which changed labels take effect
 const AFTER_MOVE_SECONDS = 1;  // in which the reaction to a move ends
 const COARSEST = 0.5;         // pixels of the picture for each of the screen, along one axis
 const KEYS = {ArrowUp: 'forward', ArrowDown: 'back', ArrowLeft: 'left', ArrowRight: 'right',
@@ -87,8 +87,7 @@ function connect() {
   };
   spar.session = new LiveSession({
     model: nameOf(model), joints: model.joint_names, frameRate: FRAME_RATE, weights: spar.weights,
-    delay: Number(element('delay').value), plan: PLAN_FRAMES,
-    acceptsStart: model.accepts_follower_start,
+    plan: PLAN_FRAMES, acceptsStart: model.accepts_follower_start,
   }, on);
 }
 
@@ -109,7 +108,7 @@ function takeFrames(part) {
 }
 
 // Changes the labels within `ease` seconds. `weights` of the classes that are not named are 0.
-function setWeights(weights, ease = Number(element('ease').value)) {
+function setWeights(weights, ease = LABEL_SECONDS) {
   spar.weights = Object.fromEntries(spar.model.interaction_classes.map(
       (name) => [name, weights[name] ?? 0]));
   for (const label of element('labels').children) {
@@ -124,7 +123,7 @@ function followMove(move) {
   const isOwn = spar.asked && Object.entries(spar.weights).every(
       ([name, weight]) => weight === (name === spar.asked ? 1 : 0));
   if (move && element('follow').checked) setWeights({[move.label]: 1});
-  else if (!move && isOwn) setWeights({}, Math.max(AFTER_MOVE_SECONDS, Number(element('ease').value)));
+  else if (!move && isOwn) setWeights({}, AFTER_MOVE_SECONDS);
   spar.asked = move && element('follow').checked ? move.label : null;
 }
 
@@ -132,11 +131,10 @@ function followMove(move) {
 
 async function chooseModel(model) {
   const body = new Body(model.joint_names);
-  const moves = await movesFor(model, spar.samples, body);
-  if (!moves) throw new Error(`${nameOf(model)}: this page has no moves for its joints.`);
+  const {rest, moves} = await movesFor(model, spar.samples, body);
   spar.session?.close();
   spar.session = null;
-  const leader = new Leader(body, moves.rest);
+  const leader = new Leader(body, rest);
   const choreography = new Choreography(leader, moves, () => distance(body, leader.pose, spar.partner));
   Object.assign(spar, {model, body, leader, choreography, recording: new Recording(), seen: false, asked: null});
   spar.playback = new Playback();  // it begins where showStage places the partner
@@ -147,7 +145,7 @@ async function chooseModel(model) {
   showStage();
   showSliders(model.interaction_classes);
   makeMoves();
-  element('help').textContent = helpFor(moves);
+  element('help').textContent = helpFor(moves.length);
   setWeights({});
   connect();
 }
@@ -159,13 +157,11 @@ function distance(body, ...poses) {
 }
 
 // How the moves are thrown, by touch or by keys.
-function helpFor({moves, isDance}) {
+function helpFor(moves) {
   if (matchMedia('(pointer: coarse)').matches) {
-    return `${isDance ? 'Tap the basic step, then figures.' : 'Tap a move.'} Hold an arrow to walk. ` +
-        'Drag with one finger to bend; two fingers turn the view.';
+    return `${moves > 0 ? 'Tap a move. ' : ''}Hold an arrow to walk. Drag to turn the view.`;
   }
-  return (isDance ? 'Keys 1 to 4 dance: press 1 for the basic step, and the others for figures.'
-                  : `Keys 1 to ${moves.length} throw a move.`) + ' Arrows walk. Drag to bend.';
+  return `${moves > 0 ? `Keys 1 to ${moves} throw a move. ` : ''}Arrows walk. Drag to turn the view.`;
 }
 
 function showStage() {
@@ -179,9 +175,6 @@ function showStage() {
   for (const {path} of Object.values(stage.people)) path.visible = false;
   spar.playback.standAt(partner);
   Object.assign(spar, {camera: {x: 0, z: 0.55}, partner});
-  // The left button bends the leader, so the right one turns the view.
-  const {mouseButtons} = stage.stage.controls;
-  Object.assign(mouseButtons, {RIGHT: mouseButtons.LEFT, LEFT: null});
 }
 
 function showSliders(classes) {
@@ -190,7 +183,7 @@ function showSliders(classes) {
     setSlider(slider, 0);
     joinSlider(slider, (weight) => {
       spar.weights = {...spar.weights, [name]: weight};
-      spar.session?.changeLabels(spar.weights, Number(element('ease').value));
+      spar.session?.changeLabels(spar.weights, LABEL_SECONDS);
     });
     return slider;
   }));
@@ -215,19 +208,16 @@ function makeMoves() {
 }
 
 function showMoves() {
-  const {moves, current, queued} = spar.choreography;
+  const {moves, current} = spar.choreography;
   moves.forEach((move, i) => {
-    const button = element('moves').children[i];
-    button.setAttribute('aria-pressed', move === current);
-    button.classList.toggle('queued', move === queued);
+    element('moves').children[i].setAttribute('aria-pressed', move === current);
   });
   root.dataset.move = current?.label ?? '';
 }
 
 function throwMove(index) {
   const move = spar.choreography.moves[index];
-  if (move) spar.choreography.choose(move);
-  showMoves();
+  if (move) spar.choreography.begin(move);
 }
 
 // Time.
@@ -299,7 +289,7 @@ function tick(now) {
   spar.latencies.show(now);
 }
 
-// Keys, mouse, touch.
+// Keys and touch.
 
 function steer() {
   const sum = (plus, minus) => Number(spar.held.has(plus)) - Number(spar.held.has(minus));
@@ -314,7 +304,7 @@ function hold(way, isHeld) {
   else spar.held.delete(way);
   if (!spar.leader) return;
   // Whoever walks stops what they do.
-  if (isHeld && spar.choreography.current) spar.choreography.begin(null, 0);
+  if (isHeld && spar.choreography.current) spar.choreography.begin(null);
   steer();
 }
 
@@ -359,51 +349,9 @@ function connectKeys() {
   }
 }
 
-// Dragging bends the leader towards where the pointer goes, as the visitor sees it.
-function connectDragging() {
-  const scene = element('scene');
-  let from = null;
-  const isBending = ({button, pointerType, isPrimary}) => isPrimary
-      && (pointerType === 'touch' || button === 0);
-  const stop = () => {
-    from = null;
-    scene.classList.remove('bending');
-    if (spar.leader) spar.leader.lean = {forward: 0, left: 0};
-  };
-  stage.addEventListener('pointerdown', (event) => {
-    if (!isBending(event)) {
-      stop();  // a second finger turns the view
-      return;
-    }
-    from = [event.clientX, event.clientY];
-    stage.setPointerCapture(event.pointerId);
-    scene.classList.add('bending');
-  });
-  stage.addEventListener('pointermove', (event) => {
-    if (!from || !event.isPrimary || !spar.leader) return;
-    const [x, y] = [event.clientX - from[0], event.clientY - from[1]];
-    // Across the view and into it, turned to the leader's own directions.
-    const {camera, controls} = stage.stage;
-    const view = Math.atan2(controls.target.x - camera.position.x, controls.target.z - camera.position.z);
-    const turn = view - spar.leader.root.yaw;
-    const [across, ahead] = [-x / PIXELS_TO_BEND, -y / PIXELS_TO_BEND];
-    spar.leader.lean = {
-      forward: clamp(ahead * Math.cos(turn) - across * Math.sin(turn), -0.4, MAX_BEND),
-      left: clamp(ahead * Math.sin(turn) + across * Math.cos(turn), -0.6, 0.6),
-    };
-  });
-  for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) stage.addEventListener(name, stop);
-  // One finger bends, so the view must not turn with it.
-  stage.addEventListener('touchstart', (event) => {
-    if (event.touches.length < 2) event.stopPropagation();
-  }, {capture: true});
-  scene.addEventListener('contextmenu', (event) => event.preventDefault());
-}
-
 function connectControls() {
   element('model').addEventListener('change', attempt(
       () => chooseModel(spar.models.find((model) => nameOf(model) === element('model').value))));
-  element('delay').addEventListener('change', connect);
   for (const button of element('records').children) {
     button.addEventListener('click', attempt(() => record(button.dataset.format)));
   }
@@ -443,7 +391,6 @@ async function start() {
       ?? spar.models.find((one) => one.is_default) ?? spar.models[0];
   element('model').value = nameOf(model);
   connectKeys();
-  connectDragging();
   connectControls();
   await chooseModel(model);
   requestAnimationFrame(tick);
