@@ -1,7 +1,5 @@
 'use strict';
-// Asks the server for answers. Part of the current answer can be kept: `settings.keep` frames from
-// its beginning stay, and the server answers the rest of the leader, starting from the last pose
-// that stays. (The contract has a start for the follower, and no end: only a beginning can be kept.)
+// Asks the server for answers.
 const GALLERY_SIZE = 8;
 const UNFAMILIAR = 1.5;  // SynthesisSummary.unfamiliarity above this gets a warning
 
@@ -10,37 +8,23 @@ function stopCalls() {
   state.call = null;
 }
 
-// The frames of the chosen answer that stay, {frames, positions}; null if all are sampled.
-function keptFrames() {
-  const take = state.takes[state.chosen];
-  if (!take || settings.keep === 0 || !state.model.accepts_follower_start) return null;
-  const frames = Math.min(settings.keep, state.leader.motion.frames - 1);
-  return {frames, positions: take.positions};
-}
-
 // Requests one answer; `seed`: '' for one that the server chooses. Calls `show` with each chunk.
-async function ask(leader, seed, kept, signal, show) {
+async function ask(leader, seed, signal, show) {
   const {motion} = leader;
   const values = motion.joint_names.length * 3;
-  const offset = kept ? kept.frames - 1 : 0;  // of the reply's frames
   const positions = new Float32Array(motion.positions.length);
-  if (kept) positions.set(kept.positions.subarray(0, kept.frames * values));
   const take = {
     positions, leader: leader.name, settings: addressOf({...settings, seed}),
     model: state.model.name, version: state.model.version, samples: Boolean(state.model.samples),
-    kept: kept?.frames ?? 0,
   };
-  const pins = sentPins(settings, state.model.joint_names, take.kept);
+  const pins = sentPins(settings, state.model.joint_names);
   let [header, summary] = [null, null];
   for await (const answer of callServer('Synthesize', 'SynthesizeRequest',
-                                        requestOf(motion, seed, kept), 'SynthesizeResponse', signal)) {
+                                        requestOf(motion, seed), 'SynthesizeResponse', signal)) {
     if (answer.chunk) {
-      const first = offset + (answer.chunk.first_frame ?? 0);
-      // The reply's first frame is the last one that stays.
-      const known = kept && first < kept.frames ? (kept.frames - first) * values : 0;
-      const fresh = answer.chunk.positions.slice(known);
-      positions.set(fresh, first * values + known);
-      show?.(first + known / values, fresh);
+      const first = answer.chunk.first_frame ?? 0;
+      positions.set(answer.chunk.positions, first * values);
+      show?.(first, answer.chunk.positions);
     }
     header ||= answer.header;
     summary ||= answer.summary;
@@ -68,14 +52,14 @@ async function react(count) {
   stopCalls();
   const call = state.call = new AbortController();
   const {leader} = state;
-  const [asked, kept, begun] = [askedFor(), keptFrames(), performance.now()];
+  const [asked, begun] = [askedFor(), performance.now()];
   const seed = firstSeed(count);
   tell('Waiting for the server …');
   if (count > 1) awaitGallery(count);
   try {
     const show = count === 1 ? (first, positions) => theatre.takeFrames(first, positions) : null;
     const answered = async (index, one) => {
-      const take = await ask(leader, one, kept, call.signal, show);
+      const take = await ask(leader, one, call.signal, show);
       if (!call.signal.aborted && count > 1) arriveInGallery(index);
       return take;
     };
@@ -112,11 +96,9 @@ async function finish(seconds) {
   changed(takes.length > 1 ? 'show eight' : 'react');
   const far = takes.some((take) => take.unfamiliarity > UNFAMILIAR)
       ? ' This leader is unlike the training data. Check the answer before you use it.' : '';
-  const {kept} = takes[chosen];
-  const stays = kept > 0 ? ` Frames 0 to ${kept - 1} are as before.` : '';
   const missed = takes[chosen].pins.filter(({metres}) => metres >= 0.01).length;
   const pins = missed > 0 ? ` ${missed} of ${takes[chosen].pins.length} pins missed.` : '';
-  tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(takes)}.${stays}${pins}${far}`);
+  tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(takes)}.${pins}${far}`);
   if (takes.length > 1 && isNarrow()) {
     element('gallery').scrollIntoView({block: 'nearest'});
   }

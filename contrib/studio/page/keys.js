@@ -10,7 +10,6 @@ const PAGE_KEYS = {
   e: () => press('show-eight'),
   n: () => press('another'),
   k: () => press('add-key'),
-  l: () => press('keep-here'),
   p: () => press('place'),
   j: () => press('pin'),
   '?': () => element('help').showModal(),

@@ -8,14 +8,14 @@ async function takeLeader(name, bytes) {
   const {leader: last} = state;
   if (last && (last.name !== name || last.file !== fingerprint(bytes))) {
     // What describes the previous file does not apply to this one.
-    for (const setting of [...READING, 'curves', 'start', 'turn', 'pose', 'keep', 'pins']) {
+    for (const setting of [...READING, 'curves', 'start', 'turn', 'pose', 'pins']) {
       settings[setting] = structuredClone(DEFAULTS[setting]);
     }
     showFields();
   }
   const leader = await readLeader(name, bytes);
   Object.assign(state, {leader, takes: [], chosen: 0, asked: '', awaited: ''});
-  Object.assign(settings, {leader: name, file: leader.file, keep: 0});
+  Object.assign(settings, {leader: name, file: leader.file});
   showLeader();
   changed(`open ${name}`);
   await keepNow();

@@ -84,7 +84,6 @@ function changed(what) {
   undoHistory.record(what);
   history.replaceState(null, '', addressOf(settings));
   showButtons();
-  showKeep();
   timeline.draw();
   followFrame();
   marker.draw();
@@ -118,12 +117,11 @@ function showButtons() {
   element('rig-download').disabled = !answered || !/\.(bvh|glb|gltf)$/i.test(rigName);
   element('rig-choice').value = state.rig ? 'file' : element('rig-choice').value;
   element('rig-name').textContent = state.rig?.name ?? '';
-  const isKept = settings.keep > 0 && state.takes[state.chosen]?.kept !== settings.keep;
-  element('react').classList.toggle('primary', !answered || stale || isKept);
+  element('react').classList.toggle('primary', !answered || stale);
   element('grade').textContent = describeGrade(state.takes[state.chosen]?.grade);
   showSeed();
   root.dataset.stale = stale;
-  tellNext(answered, stale, isKept);
+  tellNext(answered, stale);
 }
 
 // Shows the seed that the server chose in the field that is left to it.
@@ -133,31 +131,11 @@ function showSeed() {
 }
 
 // Says what to do next.
-function tellNext(answered, stale, isKept) {
+function tellNext(answered, stale) {
   if (state.call) return;
   if (state.leader && !isAnyWeight()) tell('Set at least one reaction, then press React.');
   else if (state.leader && !answered) tell('Press React.');
-  else if (isKept) tell(`Frames 0 to ${settings.keep - 1} stay. React samples the rest again.`);
   else if (stale) tell('The settings have changed: press React.');
-}
-
-// Shows how much of the answer stays.
-function showKeep() {
-  const isPossible = state.takes.length > 0 && state.model.accepts_follower_start;
-  const most = Math.max(1, (state.leader?.motion.frames ?? 2) - 1);
-  if (state.leader && settings.keep > most) settings.keep = most;
-  const {keep} = settings;
-  element('keep').disabled = element('keep-here').disabled = !isPossible;
-  element('keep').max = most + 1;  // as the timeline, so that both are aligned
-  element('keep').value = keep;
-  element('keep').style.setProperty('--share', keep / (most + 1));
-  element('keep').setAttribute('aria-valuetext', keep > 0 ? `frames 0 to ${keep - 1}` : 'nothing');
-  element('kept').value = keep > 0 ? `0 to ${keep - 1}` : 'nothing';
-}
-
-function keepFrames(count) {
-  settings.keep = Math.max(0, Math.min(count, state.leader.motion.frames - 1));
-  changed('frames to keep');
 }
 
 function showFields() {
@@ -256,8 +234,6 @@ function connectStart() {
 }
 
 function connectTimeline() {
-  element('keep').addEventListener('input', () => keepFrames(Number(element('keep').value)));
-  element('keep-here').addEventListener('click', () => keepFrames(frameNow() + 1));
   element('add-key').addEventListener('click', () => {
     keyAll(state.model.interaction_classes);
     element('curves').open = true;
@@ -303,7 +279,7 @@ async function chooseModel() {
     await takeLeader(leader.name, leader.bytes);
   } catch (error) {
     Object.assign(state, {leader: null, takes: [], chosen: 0, asked: ''});
-    Object.assign(settings, {leader: '', file: '', keep: 0});
+    Object.assign(settings, {leader: '', file: ''});
     showLeader();
     changed('model');
     throw error;
@@ -382,7 +358,6 @@ async function takeLink() {
   showFields();
   showModel();
   await restore();
-  if (state.takes.length === 0) settings.keep = 0;
   undoHistory.endGesture();
   changed('open link');
   if (wanted && wanted !== settings.model) {

@@ -44,13 +44,11 @@ function readPin(all, text) {
   if (index >= 0) soften(all, index, softness);
 }
 
-// The pins that a request for the frames from `first` on contains; `kept`: of frames that stay, pins
-// do nothing. Pins of joints that the model lacks are left out.
-const sentPins = (all, joints, kept) =>
-    all.pins.filter((pin) => pin.frame >= kept && joints.includes(pin.joint));
+// The pins that a request contains: those of joints that the model has.
+const sentPins = (all, joints) => all.pins.filter((pin) => joints.includes(pin.joint));
 
-const constraintsOf = (pins, first) => pins.map(({joint, frame, position: [x, y, z], softness}) => ({
-  joint_name: joint, frame: frame - first, position: {x, y, z}, softness}));
+const constraintsOf = (pins) => pins.map(({joint, frame, position: [x, y, z], softness}) => ({
+  joint_name: joint, frame, position: {x, y, z}, softness}));
 
 // What remains of a pin in an answer; '' if it does not have the pin.
 function describePin(take, {joint, frame, position}) {

@@ -15,10 +15,9 @@ const settings = {
   side: 'left', unit: '', metres_per_unit: '', up_axis: '', frame_rate: '', joint_map: '',
   // The request. `labels` are the sliders' weights, `curves` those that change (curves.js), `seed` is a
   // number or '' for one that the server chooses by the leader, `start` is the place of the follower's
-  // root, `turn` its direction in degrees with the pose `pose` (start.js), `keep` the number of frames
-  // of the answer to keep (asking.js), and `pins` are in pins.js.
+  // root, `turn` its direction in degrees with the pose `pose` (start.js), and `pins` are in pins.js.
   model: '', labels: {}, curves: {}, seed: '', variety: 1, candidates: 1, start: '', turn: '',
-  pose: [], direction: '', clean_up: 'auto', keep: 0, pins: [],
+  pose: [], direction: '', clean_up: 'auto', pins: [],
   // Downloading.
   resample: '', rig_joint_map: '',
 };
@@ -108,8 +107,6 @@ function takeSetting(name, text) {
     if (values.length <= MAX_POSE && values.every(Number.isFinite)) settings.pose = values;
   } else if (name === 'turn') {
     if (readNumber(text, -360, 360, null) !== null) settings.turn = text;
-  } else if (name === 'keep') {
-    settings.keep = Math.floor(readNumber(text, 0, 1e6, 0));
   } else if (name === 'seed') {
     const seed = readNumber(text, 0, Number.MAX_SAFE_INTEGER, '');
     settings.seed = seed === '' ? '' : Math.floor(seed);
@@ -161,36 +158,29 @@ function selectorOf(model) {
   return version ? {name, version: Number(version)} : {name};
 }
 
-// The request for an answer to the leader's motion. `seed`: '' for one that the server chooses. `kept`:
-// null, or the first frames of an answer
-// to keep, {frames, positions}; the request is then about the leader from the last of them on.
-function requestOf(leader, seed, kept) {
-  const values = leader.joint_names.length * 3;
-  const first = kept ? kept.frames - 1 : 0;
+// The request for an answer to the leader's motion. `seed`: '' for one that the server chooses.
+function requestOf(leader, seed) {
   const classes = state.model.interaction_classes;
   const request = {
     model: selectorOf(settings.model),
     leader: {joint_names: leader.joint_names, frame_rate_hz: leader.frame_rate_hz, unit: METRES,
-             up_axis: Y_UP, frame_count: leader.frames - first,
-             positions: leader.positions.subarray(first * values)},
+             up_axis: Y_UP, frame_count: leader.frames, positions: leader.positions},
     ...(seed !== '' && {seed}), variety: settings.variety, candidates: settings.candidates,
   };
   if (classes.some((name) => curveOf(settings, name).length > 0)) {
-    request.label_keyframes = labelKeyframes(settings, classes, first, leader.frames).map(
+    request.label_keyframes = labelKeyframes(settings, classes, leader.frames).map(
         ({frame, weights}) => ({frame, label_vector: messageOf(weights)}));
   } else {
     request.label_vector = messageOf(weightsAt(settings, classes, 0));
   }
-  const start = kept
-      ? {pose: {positions: kept.positions.subarray(first * values, (first + 1) * values)}}
-      : startMessage(leader);
+  const start = startMessage(leader);
   if (start) request.follower_start = start;
   if (settings.direction) {
     request.partner_direction = pointOf('Direction to the follower', settings.direction);
   }
   if (settings.clean_up !== 'auto') request.clean_up = CLEAN_UP[settings.clean_up];
-  const pins = sentPins(settings, state.model.joint_names, kept?.frames ?? 0);
-  if (pins.length > 0) request.constraints = constraintsOf(pins, first);
+  const pins = sentPins(settings, state.model.joint_names);
+  if (pins.length > 0) request.constraints = constraintsOf(pins);
   return request;
 }
 
@@ -213,7 +203,7 @@ function downloadName(take) {
   const {labels, curves, variety, candidates} = all;
   const names = Object.keys({...labels, ...curves});
   const reaction = isCurved(all)
-      ? labelKeyframes(all, names, 0, Infinity).flatMap(
+      ? labelKeyframes(all, names, Infinity).flatMap(
           (key) => [`at${key.frame}`, ...weights(key.weights)]) : weights(labels);
   const parts = [stemOf(take.leader), `${take.model}@${take.version}`, ...reaction];
   if (take.samples && variety !== 1) parts.push(`variety${variety}`);

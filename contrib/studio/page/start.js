@@ -72,9 +72,7 @@ function startMessage(motion) {
   return {pose: {positions: turned(pose, heading, [0, 0, 0], root)}};
 }
 
-// A start replaces a beginning that stays.
 function setStart(root, degrees, pose) {
-  settings.keep = 0;
   settings.start = root.map((value) => rounded(value)).join(', ');
   settings.pose = Array.from(pose, (value) => rounded(value));
   settings.turn = String(rounded(((degrees + 180) % 360 + 360) % 360 - 180, 1));

@@ -42,15 +42,12 @@ function removePoint(all, name, frame) {
   if (all.curves[name].length === 0) delete all.curves[name];
 }
 
-// The curves as the key frames of a request about the frames [first, end): [{frame, weights}], with
-// frames that count from `first`. Lines between the points of all curves are exact.
-function labelKeyframes(all, classes, first, end) {
-  const frames = new Set();
-  for (const name of classes) {
-    for (const [at] of curveOf(all, name)) frames.add(Math.max(first, Math.min(end - 1, at)));
-  }
-  return [...frames].sort((a, b) => a - b).map(
-      (at) => ({frame: at - first, weights: weightsAt(all, classes, at)}));
+// The curves as the key frames of a request about `frames` frames: [{frame, weights}]. Lines between the
+// points of all curves are exact.
+function labelKeyframes(all, classes, frames) {
+  const points = classes.flatMap((name) => curveOf(all, name).map(([at]) => Math.min(frames - 1, at)));
+  return [...new Set(points)].sort((a, b) => a - b).map(
+      (frame) => ({frame, weights: weightsAt(all, classes, frame)}));
 }
 
 // "hug;0:0,30:1", the form of a curve in the page's address.
@@ -87,12 +84,11 @@ class Lane {
     this.title = Object.assign(document.createElement('span'), {className: 'lane-name'});
     this.value = Object.assign(document.createElement('output'), {className: 'lane-value'});
     this.svg = svgItem('svg', {role: 'img', 'aria-label': `Curve of ${this.text}`});
-    this.kept = svgItem('rect', {class: 'kept', x: 0, y: 0, height: '100%'});
     this.zero = svgItem('line', {class: 'zero'});
     this.line = svgItem('polyline', {class: 'curve'});
     this.head = svgItem('line', {class: 'playhead', y1: 0, y2: '100%'});
     this.points = svgItem('g', {});
-    this.svg.append(this.kept, this.zero, this.line, this.head, this.points);
+    this.svg.append(this.zero, this.line, this.head, this.points);
     this.node.append(this.title, this.svg, this.value);
     this.title.textContent = this.text;
     this.connect(ended);
@@ -139,7 +135,6 @@ class Lane {
         (value) => value.toFixed(1)).join()).join(' '));
     this.node.classList.toggle('curved', curve.length > 0);
     this.node.classList.toggle('idle', curve.length === 0 && constant === 0);
-    this.kept.setAttribute('width', settings.keep > 0 ? this.x(settings.keep - 1) : 0);
     this.points.replaceChildren(...curve.map(([frame, weight]) => svgItem(
         'circle', {class: 'point', r: 5.5, cx: this.x(frame), cy: this.y(weight)})));
     this.showFrame(frameNow());

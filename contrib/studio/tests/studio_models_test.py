@@ -106,20 +106,13 @@ class StudioModelsTest(StudioTest):
         again.wait_until("state.takes.length === 1")
         np.testing.assert_allclose(again.evaluate(FOLLOWER), shown, atol=1e-6)
 
-    def test_pins_and_keeping_work_with_every_joint(self):
+    def test_pins_work_with_every_joint(self):
         page = self.open_dance()
         page.evaluate("""seekAll(100); setPin(settings, 'left_wrist', 100,
             pinHandles.placeOf('left_wrist', 100).map((value, i) => value + (i === 1 ? 0.1 : 0)));
             changed('test')""")
         self.react(page)
         self.assertLess(page.evaluate("state.takes[0].pins[0].metres"), 0.1)
-        before = page.evaluate(FOLLOWER)
-        page.evaluate("keepFrames(300)")
-        self.press(page, "another")
-        values = 300 * len(self.joints(page)) * 3
-        after = page.evaluate(FOLLOWER)
-        np.testing.assert_array_equal(after[:values], before[:values])
-        self.assertGreater(np.abs(np.subtract(after, before)).max(), 0.05)
 
 
 if __name__ == "__main__":

@@ -101,13 +101,6 @@ class StudioPinsTest(StudioTest):
         self.assertIn("1 of 1 pins missed", page.text("#status"))
         self.assertRegex(self.list_of(page)[0][2], r"^\d{3} cm away$")
 
-    def test_kept_beginning_keeps_its_pins_to_itself(self):
-        page = self.open_answered()
-        page.evaluate("""setPin(settings, 'right_hand', 20, [0, 1, 0]);
-                         setPin(settings, 'right_hand', 60, [0, 1.2, 0]); keepFrames(46)""")
-        sent = page.evaluate("requestOf(state.leader.motion, 0, keptFrames()).constraints")
-        self.assertEqual([(pin["joint_name"], pin["frame"]) for pin in sent], [("right_hand", 60 - 45)])
-
     def test_link_restores_pins(self):
         page = self.open_answered()
         page.click("#pin")

@@ -1,5 +1,5 @@
-"""The studio's tools in a real browser against a real server: gallery, curves, start, keeping a
-beginning, undo, rigs."""
+"""The studio's tools in a real browser against a real server: gallery, curves, start,
+undo, rigs."""
 
 import contextlib
 import json
@@ -236,49 +236,6 @@ class ToolsTest(StudioTest):
         again = self.open_still(link)
         self.assertEqual(again.evaluate("[settings.start, settings.turn, settings.pose]"), wanted)
 
-    # Keeping a beginning.
-
-    def test_beginning_stays_while_the_rest_is_sampled_again(self):
-        page = self.open_still(HUG, width=1200, height=900)
-        self.assertTrue(page.evaluate("element('keep').disabled"))
-        self.react(page)
-        first = self.shown(page)
-        self.seek(page, 44)
-        self.key(page, "l")
-        self.assertIn("Frames 0 to 44 stay", page.text("#status"))
-        self.press(page, "show-eight")
-        self.assertIn("Frames 0 to 44 are as before", page.text("#status"))
-        takes = [np.reshape(take, (FRAMES, 15, 3)) for take in
-                 page.evaluate("state.takes.map((take) => Array.from(take.positions))")]
-        for take in takes:
-            np.testing.assert_array_equal(take[:45], first[:45])
-        self.assertGreater(np.abs(takes[1][60:] - takes[2][60:]).max(), 0.05)
-        # The rest is the server's answer to the rest of the leader, from the last pose that stays.
-        leader = duet.read_motion(tools.sample("hug"))
-        rest = duet.Motion(leader.positions[44:], leader.joint_names, frame_rate_hz=30)
-        with duet.Client(self.server.address) as client:
-            wanted = client.synthesize(rest, labels={name: float(name == "hug") for name in tools.CLASSES},
-                                       seed=page.evaluate("state.takes[3].seed"),
-                                       follower_start=first[44]).follower.positions
-        np.testing.assert_allclose(takes[3][45:], wanted[1:], atol=1e-5)
-        # No jump where they meet.
-        steps = np.linalg.norm(np.diff(takes[3], axis=0), axis=2).max(axis=1)
-        self.assertLess(steps[44], steps.max() + 1e-6)
-        self.assertLess(steps[44], 0.1)
-        # Curves count frames of the whole motion.
-        page.evaluate("settings.curves = {hug: [[0, 1], [90, 0]]}; changed('test')")
-        frames = page.evaluate("requestOf(state.leader.motion, 0, keptFrames()).label_keyframes"
-                               ".map(({frame, label_vector: {weights}}) => [frame, weights.find("
-                               "(one) => one.interaction_class === 'hug').weight])")
-        np.testing.assert_allclose(frames, [[0, 1 - 44 / 90], [46, 0]], atol=1e-6)
-        # The same, after a reload.
-        link = page.evaluate("settings.curves = {}; changed('test'); location.hash")
-        again = self.open_still(link)
-        self.assertEqual(again.evaluate("[state.takes.length, settings.keep]"), [8, 45])
-        again.evaluate("keepFrames(0)")
-        self.react(again)
-        self.assertEqual(again.evaluate("state.takes[0].kept"), 0)
-
     # Undo.
 
     def test_everything_is_undone_and_redone(self):
@@ -303,8 +260,6 @@ class ToolsTest(StudioTest):
         self.open_curves(page)
         page.drag(self.in_lane(page, "hug", 20, 0.5), self.in_lane(page, "hug", 40, 0.9))
         did("curve of hug")
-        page.evaluate("keepFrames(30)")
-        did("frames to keep")
         page.click("#place")
         start = page.evaluate(IN_MARKER.format(part="ring"))
         page.drag(start, (start[0] + 40, start[1] + 10))
@@ -327,7 +282,7 @@ class ToolsTest(StudioTest):
             atol=1e-6)
         # A new change removes what was undone.
         self.key(page, "z", modifiers=2)
-        page.evaluate("keepFrames(10)")
+        self.label(page, "push", 0.1)
         self.assertTrue(page.evaluate("element('redo').disabled"))
 
     # Sizes.
@@ -349,11 +304,9 @@ class ToolsTest(StudioTest):
 
     # Rigs.
 
-    def test_kept_answer_is_written_on_another_files_rig(self):
+    def test_answer_is_written_on_another_files_rig(self):
         page = self.open_still(HUG, width=1200, height=900)
         self.react(page)
-        page.evaluate("keepFrames(40)")
-        self.press(page, "another")
         text = tools.sample("kick").read_text(encoding="utf-8").replace("JOINT left_hand",
                                                                         "JOINT Flipper")
         with tempfile.TemporaryDirectory() as folder:

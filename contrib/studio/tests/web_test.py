@@ -190,7 +190,7 @@ class WebTest(StudioTest):
             reached.add(page.evaluate(
                 "document.activeElement.id || document.activeElement.textContent"))
         chosen = page.evaluate("gallery.tiles[0].textContent")
-        self.assertLessEqual({"undo", "place", "play", "scrub", "keep", "keep-here",
+        self.assertLessEqual({"undo", "place", "play", "scrub",
                               chosen, "add-key", "file", "react",
                               "show-eight", "share", "rig-download"} - reached, set())
 
