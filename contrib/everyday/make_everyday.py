@@ -5,25 +5,21 @@ r"""Makes the data sets of everyday interactions (README.md) from archives of ca
       --single single.npz --table single.tsv --out everyday
 
 TRIALS holds `a_SS_TT` and `b_SS_TT` ([frames, joints, 3], metres, y up, one world), `joints`,
-`parents` and `fps`; SINGLE holds one array a motion, and TABLE its class. Writes three folders:
+`parents` and `fps`; SINGLE holds one array a motion, and TABLE its class. Writes two folders:
 OUT/first, the pairs and others staged from all single people, for a first run of the training;
-OUT/second, the pairs and a part of the staged ones; OUT/leaders, single people for
-`duet-train --leaders`.
+OUT/second, the pairs and a part of the staged ones.
 """
 
 import argparse
 import collections
 import csv
 import dataclasses
-import json
 import sys
 from pathlib import Path
 
 from everyday import captures, dataset_folder, staged
 
 STRETCHES = Path(__file__).with_name("stretches.tsv")
-LEADERS = ("walk", "turn", "sit", "stand", "talk", "dance", "exercise", "pick", "ball")
-LEADER_SECONDS = (2.0, 12.0)
 # First seconds of the staged pairs; of these, the second run has one in so many. Captured trials are
 # written as often as it takes for each class to have so many windows of the training (2 s, every .5 s).
 FIRST_SECONDS, STAGED_SECONDS, STAGED_PART = 8.0, 4.0, 4
@@ -47,23 +43,6 @@ def _single_classes(path):
     with open(path, encoding="utf-8", newline="") as file:
         return {row["key"]: row["class"] for row in csv.DictReader(file, delimiter="\t")
                 if row.get("pair_trial") != "yes"}
-
-
-def _write_leaders(archive, classes, folder):
-    folder.mkdir(parents=True)
-    names = [dataset_folder.joint_name(joint) for joint in archive.joints]
-    bones = [[parent, joint] for joint, parent in enumerate(archive.parents) if parent >= 0]
-    least, most = (round(seconds * captures.FRAME_RATE_HZ) for seconds in LEADER_SECONDS)
-    written = 0
-    for key, name in classes.items():
-        motion = captures.resample(archive.arrays[key], archive.frame_rate_hz)[:most]
-        if name in LEADERS and len(motion) >= least:
-            written += 1
-            (folder / f"{name}_{key}.json").write_text(json.dumps({
-                "format": "duet-motion", "version": 1, "unit": "metres", "up_axis": "y-up",
-                "frame_rate_hz": captures.FRAME_RATE_HZ, "joint_names": names, "bones": bones,
-                "leader": motion.round(4).tolist()}), encoding="utf-8")
-    print(f"leaders: {written}")
 
 
 def _copies(captured):
@@ -101,7 +80,6 @@ def _make(options):
     for name, pairs in (("first", copied + from_single), ("second", copied + part)):
         dataset_folder.write(pairs, trials.joints, trials.parents, captures.FRAME_RATE_HZ,
                              options.out / name)
-    _write_leaders(single, classes, options.out / "leaders")
     for title, pairs in (("captured", captured), ("first", copied + from_single),
                          ("second", copied + part)):
         _print_summary(title, pairs)

@@ -41,12 +41,6 @@ struct Sequence {
   std::optional<motion::Vec3> partner_direction;
 };
 
-// The motion of a leader who has no follower (lone_leaders.h).
-struct LoneLeader {
-  std::string id;       // path below the folder of these leaders
-  motion::Poses poses;  // world metres, y up, at the data set's rate, in its skeleton's joints
-};
-
 struct Dataset {
   std::string name;
   motion::Skeleton skeleton;
@@ -60,8 +54,6 @@ struct Dataset {
   std::vector<bool> touches;
   double frame_rate_hz = 0;
   std::vector<Sequence> sequences;  // sorted by id
-  // Sorted by id. Not part of a folder of captures: ReadDataset leaves it empty.
-  std::vector<LoneLeader> lone_leaders;
   // The values inferred because dataset.json omits them, for people to read.
   std::vector<std::string> notes;
 

@@ -80,7 +80,7 @@ struct Clips {
   std::vector<bool> needs_pose, unlabelled;
 };
 
-// Every training sequence, augmented, some of them with another leader or with pauses.
+// Every training sequence, augmented, some of them with pauses.
 Clips DrawClips(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                 const std::vector<int>& train, const TrainingOptions& options,
                 base::Random* random) {
@@ -90,19 +90,15 @@ Clips DrawClips(const checkpoint::Manifest& manifest, const dataset::Dataset& da
   if (still) first.augmentation.noise = first.augmentation.body_noise = 0;  // after the pauses
   Clips clips{AugmentAll(dataset, train, first, random), std::vector<bool>(train.size()),
               std::vector<bool>(train.size())};
-  for (size_t i = 0; i < train.size(); ++i) {
+  for (size_t i = 0; still && i < train.size(); ++i) {
     dataset::Sequence& sequence = clips.sequences[i];
-    if (flow.leaders.share > 0 && random->Chance(flow.leaders.share)) {
-      ReplaceLeader(manifest.model, dataset, options.augmentation, random, &sequence);
-    } else if (still) {
-      StillClip clip = AddStillness(dataset.skeleton, flow.stillness, dataset.frame_rate_hz,
-                                    manifest.model.window_frames, random, std::move(sequence));
-      clips.needs_pose[i] = clip.amid;
-      clips.unlabelled[i] = clip.unlabelled;
-      sequence = std::move(clip.sequence);
-      if (!random->Chance(flow.stillness.clean)) {
-        DisturbLeader(options.augmentation, random, &sequence.pair.leader);
-      }
+    StillClip clip = AddStillness(dataset.skeleton, flow.stillness, dataset.frame_rate_hz,
+                                  manifest.model.window_frames, random, std::move(sequence));
+    clips.needs_pose[i] = clip.amid;
+    clips.unlabelled[i] = clip.unlabelled;
+    sequence = std::move(clip.sequence);
+    if (!random->Chance(flow.stillness.clean)) {
+      DisturbLeader(options.augmentation, random, &sequence.pair.leader);
     }
   }
   return clips;

@@ -93,7 +93,7 @@ void Declare(Fields* fields, FlowTraining* flow) {
     fields->Number("near_hands", 1e-3, 10, &energy.near_hands);
   });
   if (fields->Has("leaders")) {
-    fields->Section("leaders", [&] { fields->Share("share", &flow->leaders.share); });
+    fields->Section("leaders", [&] { fields->Number("share", 0, 0, &flow->leaders.share); });
   }
   if (fields->Has("stillness")) {
     fields->Section("stillness", [&, &stillness = flow->stillness] {

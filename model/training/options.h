@@ -93,9 +93,9 @@ struct FlowTraining {
     int64_t frames = 20;  // from the last known frame until the captured motion is reached
   } drift;
 
-  // A fraction of the clips gets a leader who was not captured with a partner (augment.h).
+  // Of a former kind of augmentation: 0. Configurations and saved states name it.
   struct Leaders {
-    double share = 0;  // of the clips
+    double share = 0;
   } leaders;
 
   // Clips in which nothing happens for a while, made from captured ones (stillness.h). Fractions of

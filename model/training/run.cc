@@ -18,7 +18,6 @@
 #include "absl/strings/str_join.h"
 #include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
-#include "model/dataset/lone_leaders.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/exceptions.h"
 #include "model/training/augment.h"
@@ -62,9 +61,6 @@ void NoteData(const dataset::Dataset& dataset, const std::vector<int>& train,
   (*notes)["seconds"] = absl::StrCat(std::lround(seconds));
   (*notes)["people"] = absl::StrJoin(people, " ").substr(0, kMostPeopleBytes);
   (*notes)["levelled"] = levelled ? "true" : "false";
-  if (dataset.lone_leaders.empty()) return;
-  (*notes)["leaders"] =
-      absl::StrCat(dataset.lone_leaders.size(), " ", dataset::DigestOf(dataset.lone_leaders));
 }
 
 checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& dataset) {
@@ -303,7 +299,6 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   std::vector<int> validation = HoldBack(plan.options, whole, &train);
   const std::vector<int> takes = train;
   const dataset::Dataset dataset = CutIfAsked(plan.options, whole, &train, &validation);
-  DUET_RETURN_IF_ERROR(CheckLoneLeaders(plan.options, dataset));
   checkpoint::Manifest manifest = MakeManifest(plan, whole);
   manifest.model.window_frames = dataset.LongestFrameCount();
   if (const FlowTraining* flow = FlowIn(plan.options)) {

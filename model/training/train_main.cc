@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -14,7 +13,7 @@
 #include "model/base/program_output.h"
 #include "model/base/status_macros.h"
 #include "model/checkpoint/manifest.h"
-#include "model/dataset/lone_leaders.h"
+#include "model/dataset/dataset.h"
 #include "model/network/exceptions.h"
 #include "model/training/options.h"
 #include "model/training/run.h"
@@ -35,7 +34,6 @@ struct Arguments {
   std::string fold;
   std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
   std::vector<std::string> settings;
-  std::string leaders;
   std::string from;
   int threads = 1;
   std::string device = "cpu";
@@ -107,24 +105,11 @@ absl::StatusOr<std::vector<training::RunPlan>> Plans(const Arguments& arguments,
   return plans;
 }
 
-// Adds the leaders without followers, if the arguments name any.
-absl::Status AddLeaders(const Arguments& arguments, dataset::Dataset* dataset) {
-  if (arguments.leaders.empty()) return absl::OkStatus();
-  DUET_TRY(dataset->lone_leaders,
-           dataset::ReadLoneLeaders(arguments.leaders, dataset->skeleton, dataset->frame_rate_hz));
-  int frames = 0;
-  for (const auto& leader : dataset->lone_leaders) frames += leader.poses.frame_count();
-  std::cout << "leaders without followers: " << dataset->lone_leaders.size() << " motions, "
-            << std::lround(frames / dataset->frame_rate_hz) << " s\n";
-  return absl::OkStatus();
-}
-
 absl::Status Train(const Arguments& arguments) {
   DUET_RETURN_IF_ERROR(training::SetTrainingThreads(arguments.threads));
   DUET_TRY(const training::TrainingOptions options, ReadOptions(arguments));
-  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
+  DUET_TRY(const dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   for (const std::string& note : dataset.notes) std::cout << "assumed: " << note << "\n";
-  DUET_RETURN_IF_ERROR(AddLeaders(arguments, &dataset));
   DUET_TRY(const std::vector<training::RunPlan> plans, Plans(arguments, options, dataset));
   std::cout << "model: " << plans.front().model_name << " " << arguments.version << "\n";
   for (const training::RunPlan& plan : plans) {
@@ -143,10 +128,6 @@ void Declare(Arguments* arguments, CLI::App* app) {
   app->add_option("--config", arguments->config, "named configuration, or JSON file")
       ->capture_default_str();
   app->add_option("--set", arguments->settings, "override a setting: section.field=value");
-  app->add_option(
-      "--leaders", arguments->leaders,
-      "folder of motions of leaders without followers (docs/datasets.md), for the share "
-      "leaders.share of the clips");
   app->add_option("--from", arguments->from,
                   "checkpoint folder whose weights the training begins with (default: random)");
   app->add_option("--name", arguments->name, "name of the model (default: that of the data set)");

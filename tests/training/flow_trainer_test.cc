@@ -48,11 +48,10 @@ class FlowTrainerTest : public ::testing::Test {
 
 TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   // With all that is drawn at random.
-  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
   options_.start = {0, 1};
   FlowTraining& flow = FlowOf(&options_);
   flow.several_known = 1;
-  flow.own.share = flow.live.share = flow.leaders.share = flow.drift.share = 0.5;
+  flow.own.share = flow.live.share = flow.drift.share = 0.5;
   flow.stillness = {0.5, 0.2, 0.2, 0.2, 0.5};
   flow.energy.from = 0.5;
   FlowTrainer straight = Make();
@@ -89,32 +88,6 @@ TEST_F(FlowTrainerTest, ClipsOfStillnessHaveTheirStartsAndLabels) {
   }
   EXPECT_NEAR(unlabelled, 0.4 * all, 0.1 * all);
   EXPECT_NEAR(told, 0.45 * all, 0.1 * all);  // those in the midst, without whom nobody is told
-}
-
-TEST_F(FlowTrainerTest, LoneLeadersAreGivenToTheirShareOfTheClips) {
-  options_.augmentation.noise = 0;
-  options_.augmentation.mirror = 0;
-  FlowOf(&options_).passes = 60;
-  const auto drawn = [this] {
-    std::vector<motion::Poses> leaders;
-    for (const auto& batch : DrawFlowEpoch(manifest_, dataset_, AllOf(dataset_), options_, 0)) {
-      for (const FlowExample& example : batch) leaders.push_back(example.input.leader);
-    }
-    return leaders;
-  };
-  const std::vector<motion::Poses> captured = drawn();
-  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
-  EXPECT_EQ(drawn(), captured);  // share 0 draws no random number
-  // A leader who is far larger than the captured ones is recognised.
-  for (motion::Vec3& point : dataset_.lone_leaders[0].poses.all()) point = point * 3;
-  FlowOf(&options_).leaders.share = 0.3;
-  int lone = 0, all = 0;
-  for (const motion::Poses& leader : drawn()) {
-    lone += Distance(leader.at(0, 0), leader.at(0, 11)) > 2.5f;
-    ++all;
-  }
-  EXPECT_EQ(all, 420);
-  EXPECT_NEAR(lone, 0.3 * all, 40);
 }
 
 TEST_F(FlowTrainerTest, LearnsToAnswer) {

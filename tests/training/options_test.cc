@@ -72,7 +72,7 @@ TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
   EXPECT_THAT(refusal("generator.heads", "7"), HasSubstr("generator.heads: expected a divisor"));
   EXPECT_THAT(refusal("generator.noise.white", "-1"), HasSubstr("generator.noise.white"));
   EXPECT_THAT(refusal("flow.unlabelled", "2"), HasSubstr("flow.unlabelled"));
-  EXPECT_THAT(refusal("leaders.share", "1.5"), HasSubstr("leaders.share"));
+  EXPECT_THAT(refusal("leaders.share", "0.05"), HasSubstr("leaders.share"));
   EXPECT_THAT(refusal("stillness.ends", "2"), HasSubstr("stillness.ends"));
   EXPECT_THAT(refusal("optimiser.schedule", "constant"),
               HasSubstr("optimiser: unknown field \"last_share\""));

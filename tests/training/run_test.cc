@@ -8,7 +8,6 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "model/checkpoint/architecture.h"
-#include "model/dataset/lone_leaders.h"
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/options.h"
 #include "model/training/sampler.h"
@@ -127,17 +126,6 @@ TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
     }
     EXPECT_EQ(second->manifest.training.at("from"), "made_up@1 " + first->manifest.weights.sha256);
   }
-}
-
-TEST_F(RunTest, AStateOfOtherLeadersIsRejected) {
-  plan_.options = SmallFlowOptions();
-  FlowOf(&plan_.options).leaders.share = 0.5;
-  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
-  ASSERT_THAT(Go(), IsOk());
-  std::filesystem::remove_all(CheckpointFolder(plan_));
-  dataset_.lone_leaders[0].poses.at(7, 7).x += 0.01f;
-  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kFailedPrecondition,
-                             HasSubstr("other options or data: expected \"leaders\": \"1 ")));
 }
 
 TEST_F(RunTest, RejectsTheCheckpointOfAnotherModel) {

@@ -205,7 +205,7 @@ class MakeEverydayTest(unittest.TestCase):
                 "--table", str(self.folder / "single.tsv"), "--out", str(self.out)])
         return code, output.getvalue()
 
-    def test_writes_two_data_sets_and_leaders(self):
+    def test_writes_two_data_sets(self):
         code, output = self.make()
         self.assertEqual(code, 0, output)
         copies = [f"18_01_copy{i}" for i in range(2, make_everyday.CLASS_WINDOWS + 1)]
@@ -223,10 +223,6 @@ class MakeEverydayTest(unittest.TestCase):
         names = layout["skeleton"]["joint_names"]
         self.assertEqual(sorted(joint for part in layout["skeleton"]["parts"]
                                 for joint in part["joints"]), sorted(names))
-        leader = json.loads((self.out / "leaders/walk_s_02_01.json").read_text())
-        self.assertEqual((len(leader["leader"]), leader["joint_names"]), (90, names))
-        # Half of a captured pair is no leader.
-        self.assertEqual(len(list((self.out / "leaders").iterdir())), 1)
 
     def test_wrong_arrays_are_named(self):
         wrong = person(150)

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,6 @@
 #include "model/body/grade.h"
 #include "model/body/liveliness.h"
 #include "model/body/posture.h"
-#include "model/dataset/lone_leaders.h"
 #include "model/engine/live_synthesis.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/formats/motion_file.h"
@@ -65,12 +65,32 @@ double FastestTurn(const motion::Skeleton& skeleton, const Poses& poses, double 
   return fastest;
 }
 
+// The files below a folder whose extension formats::ReadLeader reads, sorted. NOT_FOUND if the
+// folder, or a folder in it, cannot be listed.
+absl::StatusOr<std::vector<fs::path>> MotionFilesBelow(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    std::error_code unknown;
+    if (it->is_regular_file(unknown) && formats::IsReadable(it->path())) {
+      files.push_back(it->path());
+    }
+  }
+  if (error) {
+    return absl::NotFoundError(
+        absl::StrCat(folder.string(), ": cannot be listed: ", error.message()));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 // The motion files below a folder as leaders of a model, in the order of their paths, and for SBU's
 // skeleton those that formulas make, each cut to `seconds`. Reports files that cannot be read, and
 // leaves them out.
 absl::StatusOr<std::vector<dataset::Sequence>> ReadLeaders(const PlausibleFlags& flags,
                                                            const engine::ModelDescription& model) {
-  DUET_TRY(const std::vector<fs::path> files, dataset::MotionFilesBelow(flags.leaders));
+  DUET_TRY(const std::vector<fs::path> files, MotionFilesBelow(flags.leaders));
   std::vector<dataset::Sequence> leaders;
   formats::ReadOptions options;
   options.skeleton = model.skeleton;
