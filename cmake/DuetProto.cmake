@@ -28,7 +28,7 @@ function(duet_proto_library)
   add_library(duet::${A_NAME} ALIAS duet_${A_NAME})
   target_include_directories(duet_${A_NAME} SYSTEM PUBLIC
     $<BUILD_INTERFACE:${out}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(duet_${A_NAME} PUBLIC gRPC::grpc++ protobuf::libprotobuf)
+  target_link_libraries(duet_${A_NAME} PUBLIC $<$<BOOL:${A_GRPC}>:gRPC::grpc++> protobuf::libprotobuf)
   if(A_GLUE)
     target_compile_options(duet_${A_NAME} PRIVATE ${DUET_GLUE_OPTIONS})
   endif()

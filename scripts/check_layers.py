@@ -63,7 +63,7 @@ LAYERS = (
     Layer("training", "model/training",
           sees=("base", "motion", "body", "retargeting", "dataset", "engine", "checkpoint",
                 "network"),
-          libraries=("torch",)),
+          libraries=("torch",), source_libraries=("rpc",)),
     # Evaluation.
     Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "body", "dataset")),
     Layer("baselines", "model/evaluation/baselines",

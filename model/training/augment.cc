@@ -129,35 +129,35 @@ void SwapRoles(dataset::Sequence* sequence) {
   if (sequence->partner_direction) sequence->partner_direction = -*sequence->partner_direction;
 }
 
-void DisturbLeader(const TrainingOptions::Augmentation& options, base::Random* random,
+void DisturbLeader(const CommonSettings::Augmentation& options, base::Random* random,
                    motion::Clip* leader) {
-  if (options.noise > 0) AddNoise(options.noise, random, leader);
-  if (options.body_noise > 0) AddBodyNoise(options.body_noise, random, leader);
+  if (options.noise() > 0) AddNoise(options.noise(), random, leader);
+  if (options.body_noise() > 0) AddBodyNoise(options.body_noise(), random, leader);
 }
 
 dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
-                          const TrainingOptions::Augmentation& options, base::Random* random) {
+                          const CommonSettings::Augmentation& options, base::Random* random) {
   dataset::Sequence variant = sequence;
   const size_t interaction = static_cast<size_t>(sequence.interaction_class);
-  if (dataset.symmetric[interaction] && random->Chance(options.swap_roles)) SwapRoles(&variant);
-  if (!dataset.handed[interaction] && options.mirror > 0 && random->Chance(options.mirror)) {
+  if (dataset.symmetric[interaction] && random->Chance(options.swap_roles())) SwapRoles(&variant);
+  if (!dataset.handed[interaction] && options.mirror() > 0 && random->Chance(options.mirror())) {
     Mirror(MirroredJoints(dataset.skeleton), &variant);
   }
   motion::ClipPair* pair = &variant.pair;
-  if (random->Chance(options.crop)) Crop(random, &variant);
-  if (options.time_warp > 0) {
-    Warp(std::exp(random->Uniform(-options.time_warp, options.time_warp)),
+  if (random->Chance(options.crop())) Crop(random, &variant);
+  if (options.time_warp() > 0) {
+    Warp(std::exp(random->Uniform(-options.time_warp(), options.time_warp())),
          dataset.LongestFrameCount(), &variant);
   }
-  if (options.body_scale > 0) {
-    const double leader = 1 + random->Uniform(-options.body_scale, options.body_scale);
-    const double follower = 1 + random->Uniform(-options.body_scale, options.body_scale);
+  if (options.body_scale() > 0) {
+    const double leader = 1 + random->Uniform(-options.body_scale(), options.body_scale());
+    const double follower = 1 + random->Uniform(-options.body_scale(), options.body_scale());
     ScaleBodies(dataset.skeleton.root, leader, follower, pair);
   }
-  if (options.yaw > 0)
-    Turn(random->Normal(options.yaw), pair);  // partner_direction does not change
-  if (options.leader_yaw > 0) {
-    TurnLeader(dataset.skeleton.root, random->Normal(options.leader_yaw), &pair->leader);
+  if (options.yaw() > 0)
+    Turn(random->Normal(options.yaw()), pair);  // partner_direction does not change
+  if (options.leader_yaw() > 0) {
+    TurnLeader(dataset.skeleton.root, random->Normal(options.leader_yaw()), &pair->leader);
   }
   DisturbLeader(options, random, &pair->leader);
   return variant;

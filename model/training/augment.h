@@ -29,12 +29,12 @@ void SwapRoles(dataset::Sequence* sequence);
 motion::Vec3 Normal3(double deviation, base::Random* random);
 
 // Adds the noise of a captured leader: `noise` and `body_noise` of the options.
-void DisturbLeader(const TrainingOptions::Augmentation& options, base::Random* random,
+void DisturbLeader(const CommonSettings::Augmentation& options, base::Random* random,
                    motion::Clip* leader);
 
 // A random variant of a sequence. Requires options that CheckAgainst accepts.
 dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
-                          const TrainingOptions::Augmentation& options, base::Random* random);
+                          const CommonSettings::Augmentation& options, base::Random* random);
 
 // Checks that the skeleton has the joints that AddStillness needs, if the options use it.
 // INVALID_ARGUMENT otherwise.
@@ -67,7 +67,7 @@ struct StillClip {
 // The clip is at most `most_frames` long; a reaction that leaves no room gets no pauses. Requires
 // the joints of CheckStillness, and a clip without a time line of labels. Units: frame_rate_hz of
 // the clip.
-StillClip AddStillness(const motion::Skeleton& skeleton, const FlowTraining::Stillness& options,
+StillClip AddStillness(const motion::Skeleton& skeleton, const FlowSettings::Stillness& options,
                        double frame_rate_hz, int most_frames, base::Random* random,
                        dataset::Sequence sequence);
 

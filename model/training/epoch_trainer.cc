@@ -84,9 +84,9 @@ EpochReport EpochTrainer::RunEpoch() {
   const auto begin = std::chrono::steady_clock::now();
   EpochReport report;
   report.epoch = epoch_ + 1;
-  report.epochs = options_.epochs;
+  report.epochs = options_.common.epochs();
   // Dropout uses LibTorch's random numbers. Seeding by epoch makes a resumed run draw the same.
-  torch::manual_seed(options_.seed * 1000003 + static_cast<uint64_t>(epoch_));
+  torch::manual_seed(options_.common.seed() * 1000003 + static_cast<uint64_t>(epoch_));
   generator_->train();
   TrainEpoch(epoch_ * steps_per_epoch(), &report);
   ++epoch_;

@@ -52,7 +52,7 @@ class EpochTrainer {
   virtual int64_t steps_per_epoch() const = 0;
   // Number of completed epochs.
   int64_t epoch() const { return epoch_; }
-  bool Finished() const { return epoch_ >= options_.epochs; }
+  bool Finished() const { return epoch_ >= options_.common.epochs(); }
 
   // Trains on a device of LibTorch: "cpu" or "cuda". INVALID_ARGUMENT if the method
   // cannot, FAILED_PRECONDITION if LibTorch cannot. Requires that nothing else was called before.

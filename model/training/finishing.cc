@@ -132,14 +132,14 @@ constexpr int64_t kLeastFrames = 4;
 constexpr double kSmoothedTarget = 0.9;  // the probability that a captured follower should get
 constexpr double kLeastDeviation = 0.02;
 
-TrainingOptions::Optimiser OptimiserSettings() {
-  TrainingOptions::Optimiser settings;
-  settings.learning_rate = 3e-3;
-  settings.schedule = "cosine";
-  settings.warm_up_steps = 0;
-  settings.last_share = 0;
-  settings.weight_decay = 1e-2;
-  settings.gradient_clip = 1;
+CommonSettings::Optimiser OptimiserSettings() {
+  CommonSettings::Optimiser settings;
+  settings.set_learning_rate(3e-3);
+  settings.set_schedule(COSINE);
+  settings.set_warm_up_steps(0);
+  settings.set_last_share(0);
+  settings.set_weight_decay(1e-2);
+  settings.set_gradient_clip(1);
   return settings;
 }
 
@@ -183,22 +183,22 @@ struct Material {
   Inputs captured, sampled;
 };
 
-absl::StatusOr<Material> Gather(const FlowTraining& flow, const checkpoint::Checkpoint& checkpoint,
+absl::StatusOr<Material> Gather(const FlowSettings& flow, const checkpoint::Checkpoint& checkpoint,
                                 const dataset::Dataset& dataset, std::vector<int> train,
                                 base::Random* random) {
   const engine::ModelDescription& model = checkpoint.manifest.model;
   DUET_TRY(const auto synthesizer, SynthesizerOf(checkpoint));
   // No more than the steps will draw.
   const auto most = static_cast<size_t>(
-      std::max<int64_t>(1, flow.critic.steps * kHalfBatch / flow.critic.answers));
+      std::max<int64_t>(1, flow.critic().steps() * kHalfBatch / flow.critic().answers()));
   Material material;
-  for (int64_t n = 0; n < flow.critic.answers; ++n) {
+  for (int64_t n = 0; n < flow.critic().answers(); ++n) {
     random->Shuffle(&train);
     const std::vector<int> some(
         train.begin(), train.begin() + static_cast<std::ptrdiff_t>(std::min(most, train.size())));
     const Windows made =
         MakeWindows(dataset, some, n % 2 == 0 ? StartKnowledge::kNone : StartKnowledge::kPose,
-                    flow.target_smoothing, random);
+                    flow.flow().target_smoothing(), random);
     absl::Status status =
         AddInputs(model, made, AnswerAll(*synthesizer, made.windows), &material.sampled);
     // A captured follower is the same every time, but for the parts that `some` has.
@@ -310,7 +310,7 @@ std::vector<checkpoint::Tensor> Store(const engine::ModelDescription& model, Cri
 
 }  // namespace
 
-absl::StatusOr<TrainedCritic> TrainCritic(const FlowTraining& flow, uint64_t seed,
+absl::StatusOr<TrainedCritic> TrainCritic(const FlowSettings& flow, uint64_t seed,
                                           const checkpoint::Checkpoint& generator,
                                           const dataset::Dataset& dataset,
                                           const std::vector<int>& train) {
@@ -319,16 +319,16 @@ absl::StatusOr<TrainedCritic> TrainCritic(const FlowTraining& flow, uint64_t see
   const Scale scale = ScaleOf(material.captured, dataset.class_count());
   torch::manual_seed(seed);
   CriticModule critic(scale.mean.size(0));
-  Optimiser optimiser(OptimiserSettings(), critic->parameters(), flow.critic.steps);
+  Optimiser optimiser(OptimiserSettings(), critic->parameters(), flow.critic().steps());
   TrainedCritic trained;
-  const int64_t last = std::max<int64_t>(1, flow.critic.steps / 10);
-  for (int64_t step = 0; step < flow.critic.steps; ++step) {
+  const int64_t last = std::max<int64_t>(1, flow.critic().steps() / 10);
+  for (int64_t step = 0; step < flow.critic().steps(); ++step) {
     const CriticBatch batch = DrawBatch(material, scale, &random);
     const torch::Tensor loss =
         F::binary_cross_entropy_with_logits(critic(batch.input, batch.mask), batch.target);
     loss.backward();
     optimiser.Step(step);
-    if (step >= flow.critic.steps - last) {
+    if (step >= flow.critic().steps() - last) {
       trained.loss += loss.item<double>() / static_cast<double>(last);
     }
   }

@@ -45,7 +45,7 @@ struct TrainedCritic {
 // own answers to their leaders. Both pass the stages of a server, with and without a first pose.
 // The result depends only on the arguments. Errors: INTERNAL if an answer is not finite.
 // Requires a generator that samples, at least one sequence and at least one step.
-absl::StatusOr<TrainedCritic> TrainCritic(const FlowTraining& flow, uint64_t seed,
+absl::StatusOr<TrainedCritic> TrainCritic(const FlowSettings& flow, uint64_t seed,
                                           const checkpoint::Checkpoint& generator,
                                           const dataset::Dataset& dataset,
                                           const std::vector<int>& train);

@@ -35,19 +35,19 @@ std::vector<bool> BelowHips(const motion::Skeleton& skeleton) {
 // One random error, applied in full or in part.
 class Error {
  public:
-  Error(const motion::Skeleton& skeleton, const FlowTraining::Drift& options, base::Random* random)
+  Error(const motion::Skeleton& skeleton, const FlowSettings::Drift& options, base::Random* random)
       : skeleton_(skeleton),
         below_hips_(BelowHips(skeleton)),
         tilt_axis_(Horizontal(random->Uniform(0, 2 * kPi))),
         bend_axis_(Horizontal(random->Uniform(0, 2 * kPi))),
-        tilt_(random->Normal(options.tilt)),
-        bend_(random->Normal(options.bend)),
-        turn_(random->Normal(options.turn)),
-        moved_{static_cast<float>(random->Normal(options.root)),
-               static_cast<float>(random->Normal(options.height)),
-               static_cast<float>(random->Normal(options.root))} {
+        tilt_(random->Normal(options.tilt())),
+        bend_(random->Normal(options.bend())),
+        turn_(random->Normal(options.turn())),
+        moved_{static_cast<float>(random->Normal(options.root())),
+               static_cast<float>(random->Normal(options.height())),
+               static_cast<float>(random->Normal(options.root()))} {
     for (int j = 0; j < skeleton.joint_count(); ++j) {
-      joints_.push_back(Normal3(options.joints, random));
+      joints_.push_back(Normal3(options.joints(), random));
     }
   }
 
@@ -83,7 +83,7 @@ class Error {
 
 }  // namespace
 
-void AddDrift(const motion::Skeleton& skeleton, const FlowTraining::Drift& options,
+void AddDrift(const motion::Skeleton& skeleton, const FlowSettings::Drift& options,
               base::Random* random, engine::NetworkInput* input, motion::Poses* target) {
   const Error error(skeleton, options, random);
   error.Apply(1, absl::MakeSpan(input->start->pose));
@@ -92,7 +92,7 @@ void AddDrift(const motion::Skeleton& skeleton, const FlowTraining::Drift& optio
   const int told = std::max(1, input->settled.frame_count());
   for (int t = 0; t < target->frame_count(); ++t) {
     const double since =
-        std::clamp((t - told + 1.0) / static_cast<double>(options.frames), 0.0, 1.0);
+        std::clamp((t - told + 1.0) / static_cast<double>(options.frames()), 0.0, 1.0);
     const double share = 0.5 + 0.5 * std::cos(kPi * since);
     if (share > 0) error.Apply(share, (*target)[t]);
   }
@@ -130,12 +130,12 @@ void KeepLabels(int now, int frames, std::vector<float>* labels) {
 }  // namespace
 
 void HideFuture(const motion::Skeleton& skeleton, double frame_rate_hz,
-                const FlowTraining::Live& live, base::Random* random, FlowExample* example) {
+                const FlowSettings::Live& live, base::Random* random, FlowExample* example) {
   engine::NetworkInput& input = example->input;
   const int last_known = std::max(0, KnownFrames(input) - 1);
-  const int now = last_known + DrawFrames(live.remade_seconds, frame_rate_hz, random);
-  const int newest = now + DrawFrames(live.delay_seconds, frame_rate_hz, random);
-  const int future = static_cast<int>(std::lround(live.future_seconds * frame_rate_hz));
+  const int now = last_known + DrawFrames(live.remade_seconds(), frame_rate_hz, random);
+  const int newest = now + DrawFrames(live.delay_seconds(), frame_rate_hz, random);
+  const int future = static_cast<int>(std::lround(live.future_seconds() * frame_rate_hz));
   const int frames = std::min(input.leader.frame_count(), now + 1 + future);
   Shorten(frames, example);
   if (now < frames) KeepLabels(now, frames, &input.labels);
@@ -155,13 +155,13 @@ struct Chosen {
   int frames;
 };
 
-std::vector<Chosen> Choose(const FlowTraining::Own& own, base::Random* random,
+std::vector<Chosen> Choose(const FlowSettings::Own& own, base::Random* random,
                            std::vector<FlowExample>* examples) {
   std::vector<Chosen> chosen;
   for (FlowExample& example : *examples) {
     const int known = example.input.settled.frame_count();
-    if (known < 2 || !random->Chance(own.share)) continue;
-    const int64_t most = std::min<int64_t>(own.most_frames, known - 1);
+    if (known < 2 || !random->Chance(own.share())) continue;
+    const int64_t most = std::min<int64_t>(own.most_frames(), known - 1);
     chosen.push_back({&example, 1 + static_cast<int>(random->Below(most))});
   }
   return chosen;
@@ -195,7 +195,7 @@ void Replace(const motion::Skeleton& skeleton, const Poses& own, int from, int64
 
 }  // namespace
 
-void ContinueOwnMotion(const motion::Skeleton& skeleton, const FlowTraining::Own& own,
+void ContinueOwnMotion(const motion::Skeleton& skeleton, const FlowSettings::Own& own,
                        const Answer& answer, base::Random* random,
                        std::vector<FlowExample>* examples) {
   const std::vector<Chosen> chosen = Choose(own, random, examples);
@@ -208,7 +208,7 @@ void ContinueOwnMotion(const motion::Skeleton& skeleton, const FlowTraining::Own
   }
   const std::vector<Poses> answers = answer(inputs);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    Replace(skeleton, answers[i], inputs[i].settled.frame_count(), own.return_frames,
+    Replace(skeleton, answers[i], inputs[i].settled.frame_count(), own.return_frames(),
             chosen[i].example);
   }
 }

@@ -50,27 +50,30 @@ void ScalePair(float scale, FlowExample* example) {
 FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const dataset::Sequence& sequence, bool needs_pose,
                         const TrainingOptions& options, base::Random* random) {
-  const auto& flow = std::get<FlowTraining>(options.method);
-  const bool live = flow.live.share > 0 && random->Chance(flow.live.share);
-  const bool goes_on = live && random->Chance(flow.live.several_known);
+  const FlowSettings& flow = options.flow;
+  const bool live = flow.live().share() > 0 && random->Chance(flow.live().share());
+  const bool goes_on = live && random->Chance(flow.live().several_known());
   const StartKnowledge start =
-      goes_on || needs_pose ? StartKnowledge::kPose : DrawStart(options.start, random);
+      goes_on || needs_pose ? StartKnowledge::kPose : DrawStart(options.common.start(), random);
   FlowExample example = MakeFlowExample(
-      manifest, dataset, CapturedExample(dataset, sequence, start), flow.target_smoothing);
+      manifest, dataset, CapturedExample(dataset, sequence, start), flow.flow().target_smoothing());
   example.live = live;
-  if (goes_on || (start == StartKnowledge::kPose && random->Chance(flow.several_known))) {
+  if (goes_on || (start == StartKnowledge::kPose && random->Chance(flow.flow().several_known()))) {
     TellSeveral(example.target, random, &example.input);
   }
-  Disturb(flow.known_noise, random, &example.input);
-  if (start == StartKnowledge::kPose && random->Chance(flow.drift.share)) {
-    AddDrift(dataset.skeleton, flow.drift, random, &example.input, &example.target);
+  Disturb(flow.flow().known_noise(), random, &example.input);
+  if (start == StartKnowledge::kPose && random->Chance(flow.drift().share())) {
+    AddDrift(dataset.skeleton, flow.drift(), random, &example.input, &example.target);
   }
-  if (flow.architecture.frame_labels) {
+  if (std::get<checkpoint::FlowArchitecture>(manifest.architecture).frame_labels) {
     example.input.labels =
-        DrawFrameLabels(sequence, dataset.class_count(), flow.frame_labels, random);
+        DrawFrameLabels(sequence, dataset.class_count(), flow.frame_labels(), random);
   }
-  ScalePair(static_cast<float>(1 + random->Uniform(-flow.pair_scale, flow.pair_scale)), &example);
-  if (live) HideFuture(dataset.skeleton, manifest.model.frame_rate_hz, flow.live, random, &example);
+  ScalePair(
+      static_cast<float>(1 + random->Uniform(-flow.flow().pair_scale(), flow.flow().pair_scale())),
+      &example);
+  if (live)
+    HideFuture(dataset.skeleton, manifest.model.frame_rate_hz, flow.live(), random, &example);
   return example;
 }
 
@@ -84,28 +87,32 @@ struct Clips {
 Clips DrawClips(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                 const std::vector<int>& train, const TrainingOptions& options,
                 base::Random* random) {
-  const auto& flow = std::get<FlowTraining>(options.method);
-  const bool still = flow.stillness.used();
+  const FlowSettings& flow = options.flow;
+  const bool still = UsesStillness(flow);
   TrainingOptions first = options;
-  if (still) first.augmentation.noise = first.augmentation.body_noise = 0;  // after the pauses
+  if (still) {  // the noise is added after the pauses
+    first.common.mutable_augmentation()->set_noise(0);
+    first.common.mutable_augmentation()->set_body_noise(0);
+  }
   Clips clips{AugmentAll(dataset, train, first, random), std::vector<bool>(train.size()),
               std::vector<bool>(train.size())};
   for (size_t i = 0; still && i < train.size(); ++i) {
     dataset::Sequence& sequence = clips.sequences[i];
-    StillClip clip = AddStillness(dataset.skeleton, flow.stillness, dataset.frame_rate_hz,
+    StillClip clip = AddStillness(dataset.skeleton, flow.stillness(), dataset.frame_rate_hz,
                                   manifest.model.window_frames, random, std::move(sequence));
     clips.needs_pose[i] = clip.amid;
     clips.unlabelled[i] = clip.unlabelled;
     sequence = std::move(clip.sequence);
-    if (!random->Chance(flow.stillness.clean)) {
-      DisturbLeader(options.augmentation, random, &sequence.pair.leader);
+    if (!random->Chance(flow.stillness().clean())) {
+      DisturbLeader(options.common.augmentation(), random, &sequence.pair.leader);
     }
   }
   return clips;
 }
 
 int64_t BatchesPerPass(const TrainingOptions& options, size_t sequences) {
-  const int64_t batches = (static_cast<int64_t>(sequences) + options.batch - 1) / options.batch;
+  const int64_t batches =
+      (static_cast<int64_t>(sequences) + options.common.batch() - 1) / options.common.batch();
   return std::max<int64_t>(1, batches);
 }
 
@@ -121,9 +128,10 @@ FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset:
 }
 
 int64_t PassesPerEpoch(const TrainingOptions& options, size_t sequences) {
-  const auto& flow = std::get<FlowTraining>(options.method);
-  const int64_t steps = BatchesPerPass(options, sequences) * options.epochs;  // of one pass each
-  return std::max(flow.passes, (flow.least_steps + steps - 1) / steps);
+  const FlowSettings& flow = options.flow;
+  const int64_t steps =
+      BatchesPerPass(options, sequences) * options.common.epochs();  // of one pass each
+  return std::max(flow.flow().passes(), (flow.flow().least_steps() + steps - 1) / steps);
 }
 
 int64_t StepsPerEpoch(const TrainingOptions& options, size_t sequences) {
@@ -160,19 +168,20 @@ FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tenso
 FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const std::vector<int>& train, const TrainingOptions& options,
                         int64_t epoch) {
-  const auto& flow = std::get<FlowTraining>(options.method);
-  base::Random random(options.seed, epoch);
+  const FlowSettings& flow = options.flow;
+  base::Random random(options.common.seed(), epoch);
   FlowEpoch batches;
   const int64_t passes = PassesPerEpoch(options, train.size());
   for (int64_t pass = 0; pass < passes; ++pass) {
     const Clips clips = DrawClips(manifest, dataset, train, options, &random);
-    for (const std::vector<int>& piece : BatchesByLength(clips.sequences, options.batch, &random)) {
+    for (const std::vector<int>& piece :
+         BatchesByLength(clips.sequences, options.common.batch(), &random)) {
       std::vector<FlowExample>& examples = batches.emplace_back();
       for (const int index : piece) {
         const auto i = static_cast<size_t>(index);
         examples.push_back(DrawExample(manifest, dataset, clips.sequences[i], clips.needs_pose[i],
                                        options, &random));
-        examples.back().unlabelled = random.Chance(flow.unlabelled) || clips.unlabelled[i];
+        examples.back().unlabelled = random.Chance(flow.flow().unlabelled()) || clips.unlabelled[i];
       }
     }
   }

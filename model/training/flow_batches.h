@@ -36,19 +36,19 @@ FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset:
                             const Example& example, double smoothing);
 
 // The passes of an epoch over `sequences` training sequences, and the steps that it takes: as set,
-// or as many more as the run needs for its least number of steps. Require a FlowTraining.
+// or as many more as the run needs for its least number of steps. Require a FlowArchitecture.
 int64_t PassesPerEpoch(const TrainingOptions& options, size_t sequences);
 int64_t StepsPerEpoch(const TrainingOptions& options, size_t sequences);
 
 // The clips of one epoch in batches: every training sequence once in every pass, augmented, with no
 // start, the root, the first pose or several known frames. Depends only on options, data and epoch.
-// Requires a FlowTraining.
+// Requires a FlowArchitecture.
 using FlowEpoch = std::vector<std::vector<FlowExample>>;
 FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const std::vector<int>& train, const TrainingOptions& options,
                         int64_t epoch);
 
-// Shapes: base_poses [C, 3 J]. Requires a FlowTraining.
+// Shapes: base_poses [C, 3 J]. Requires a FlowArchitecture.
 FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
                         const std::vector<FlowExample>& examples);
 
@@ -65,7 +65,7 @@ struct FlowStatistics {
   torch::Tensor spreads;
 };
 
-// Requires a FlowArchitecture. `smoothing`: see FlowTraining::target_smoothing.
+// Requires a FlowArchitecture. `smoothing`: see FlowSettings::Flow::target_smoothing.
 FlowStatistics MeasureFollowers(const checkpoint::Manifest& manifest,
                                 const dataset::Dataset& dataset, const std::vector<int>& train,
                                 double smoothing);
@@ -75,7 +75,7 @@ FlowStatistics MeasureFollowers(const checkpoint::Manifest& manifest,
 // the same error and reaches the captured motion `options.frames` frames after the last known one.
 // Requires a start pose. Shapes: target [frames, joints], as the input's leader. Source: like
 // training on roll-outs (Ross et al. 2011), with invented errors.
-void AddDrift(const motion::Skeleton& skeleton, const FlowTraining::Drift& options,
+void AddDrift(const motion::Skeleton& skeleton, const FlowSettings::Drift& options,
               base::Random* random, engine::NetworkInput* input, motion::Poses* target);
 
 // Makes a window of a live session (engine::LiveSynthesis) of an example: at a random frame "now",
@@ -85,7 +85,7 @@ void AddDrift(const motion::Skeleton& skeleton, const FlowTraining::Drift& optio
 //
 // Units: frame_rate_hz of the example.
 void HideFuture(const motion::Skeleton& skeleton, double frame_rate_hz,
-                const FlowTraining::Live& live, base::Random* random, FlowExample* example);
+                const FlowSettings::Live& live, base::Random* random, FlowExample* example);
 
 // Answers of the network in training: one follower for each input, with its seed.
 using Answer = std::function<std::vector<motion::Poses>(absl::Span<const engine::NetworkInput>)>;
@@ -95,7 +95,7 @@ using Answer = std::function<std::vector<motion::Poses>(absl::Span<const engine:
 // the last of these frames, up to own.most_frames, are replaced by the network's answer, and
 // the target becomes the captured motion plus what the answer differed by, which fades out over
 // own.return_frames. The limbs of the target keep their captured lengths.
-void ContinueOwnMotion(const motion::Skeleton& skeleton, const FlowTraining::Own& own,
+void ContinueOwnMotion(const motion::Skeleton& skeleton, const FlowSettings::Own& own,
                        const Answer& answer, base::Random* random,
                        std::vector<FlowExample>* examples);
 

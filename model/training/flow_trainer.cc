@@ -16,9 +16,9 @@ namespace {
 
 network::FlowGenerator MakeGenerator(const TrainingOptions& options,
                                      const checkpoint::Manifest& manifest) {
-  torch::manual_seed(options.seed);
+  torch::manual_seed(options.common.seed());
   network::FlowGenerator generator(manifest);
-  generator->set_dropout(std::get<FlowTraining>(options.method).dropout);
+  generator->set_dropout(options.flow.flow().dropout());
   return generator;
 }
 
@@ -38,17 +38,18 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
                          const dataset::Dataset& dataset, std::vector<int> train,
                          std::vector<int> validation)
     : EpochTrainer(options, manifest, dataset, std::move(train), std::move(validation)),
-      flow_(std::get<FlowTraining>(options.method)),
+      flow_(options.flow),
       architecture_(std::get<checkpoint::FlowArchitecture>(manifest.architecture)),
       hands_(motion::FindHands(dataset.skeleton)),
       steps_per_epoch_(StepsPerEpoch(options, train_.size())),
       generator_(MakeGenerator(options, manifest)),
-      optimiser_(options.optimiser, generator_->parameters(), steps_per_epoch_ * options.epochs) {
+      optimiser_(options.common.optimiser(), generator_->parameters(),
+                 steps_per_epoch_ * options.common.epochs()) {
   const FlowStatistics statistics =
-      MeasureFollowers(manifest, dataset, train_, flow_.target_smoothing);
+      MeasureFollowers(manifest, dataset, train_, flow_.flow().target_smoothing());
   generator_->SetMeasured(statistics.base_poses, statistics.noise_roots);
   base_poses_ = generator_->base_poses().clone();
-  class_weights_ = statistics.spreads.pow(-flow_.class_balance);
+  class_weights_ = statistics.spreads.pow(-flow_.flow().class_balance());
   class_weights_ /= class_weights_.mean();
   Begin(generator_.get());
 }
@@ -80,37 +81,38 @@ torch::Tensor FlowTrainer::ClipWeights(const FlowBatch& batch) const {
 template <typename Add>
 void FlowTrainer::AddBodyScores(const FlowBatch& batch, const torch::Tensor& answers,
                                 const Add& add, EpochReport* report) {
-  const FlowTraining::Energy& energy = flow_.energy;
+  const FlowSettings::Energy& energy = flow_.energy();
   const torch::Tensor& lengths = batch.input.lengths;
   const motion::Skeleton& skeleton = manifest_.model.skeleton;
   const torch::Tensor base = batch.input.base.unsqueeze(1) / architecture_.offset_scale;
-  if (energy.feet_weight > 0 && skeleton.feet) {
+  if (energy.feet_weight() > 0 && skeleton.feet) {
     // The motion of a foot, in offsets per frame, below which it stands.
     const double still =
-        flow_.slide_speed / manifest_.model.frame_rate_hz / architecture_.offset_scale;
+        flow_.flow().slide_speed() / manifest_.model.frame_rate_hz / architecture_.offset_scale;
     const auto motions = [&](const torch::Tensor& motion) {
       return network::FootMotions(motion, *skeleton.feet, still);
     };
-    add(energy.feet_weight,
+    add(energy.feet_weight(),
         network::EnergyScores(motions(answers), motions(batch.target), lengths - 1),
         &report->continuity);
   }
-  if (energy.hands_weight > 0 && hands_) {
+  if (energy.hands_weight() > 0 && hands_) {
     const double scale = architecture_.offset_scale;
     const auto places = [&](const torch::Tensor& offsets) {
       return network::HandPlaces(offsets + base, batch.input.leader / scale, *hands_,
-                                 energy.near_hands / scale);
+                                 energy.near_hands() / scale);
     };
-    add(energy.hands_weight, network::EnergyScores(places(answers), places(batch.target), lengths),
+    add(energy.hands_weight(),
+        network::EnergyScores(places(answers), places(batch.target), lengths),
         &report->reconstruction);
   }
 }
 
 torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* report) {
-  const FlowTraining::Energy& energy = flow_.energy;
+  const FlowSettings::Energy& energy = flow_.energy();
   const torch::Tensor& lengths = batch.input.lengths;
   std::vector<torch::Tensor> sources;
-  for (int64_t a = 0; a < energy.answers; ++a) sources.push_back(DrawSource(batch));
+  for (int64_t a = 0; a < energy.answers(); ++a) sources.push_back(DrawSource(batch));
   const torch::Tensor answers = network::PlainAnswers(generator_, architecture_, batch.input,
                                                       batch.labels, torch::stack(sources));
   torch::Tensor total = torch::zeros({}, batch.target.options());
@@ -122,11 +124,12 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
   };
   add(1, network::EnergyScores(answers, batch.target, lengths), &report->reconstruction);
   const double rate = kVelocityScale;
-  add(energy.velocity_weight,
+  add(energy.velocity_weight(),
       network::VelocityEnergyScores(rate * answers, rate * batch.target, lengths),
       &report->continuity);
-  add(energy.block_weight,
-      network::BlockEnergyScores(rate * answers, rate * batch.target, lengths, energy.block_frames),
+  add(energy.block_weight(),
+      network::BlockEnergyScores(rate * answers, rate * batch.target, lengths,
+                                 energy.block_frames()),
       &report->continuity);
   AddBodyScores(batch, answers, add, report);
   means_.Add(&report->generator, total);
@@ -146,27 +149,29 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
     means_.Add(mean, loss.mean());
   };
   add(1, network::SquaredErrors(predicted, batch.target, lengths), &report->reconstruction);
-  add(flow_.difference_weight, network::SquaredDifferenceErrors(predicted, batch.target, lengths),
-      &report->continuity);
+  add(flow_.flow().difference_weight(),
+      network::SquaredDifferenceErrors(predicted, batch.target, lengths), &report->continuity);
   const torch::Tensor base = batch.input.base.unsqueeze(1) / architecture_.offset_scale;
-  if (flow_.bone_weight > 0) {
-    add(flow_.bone_weight,
+  if (flow_.flow().bone_weight() > 0) {
+    add(flow_.flow().bone_weight(),
         network::SquaredBoneErrors(predicted + base, batch.target + base, lengths,
                                    manifest_.model.skeleton.bones),
         &report->bone);
   }
   losses = losses * ClipWeights(batch).square();  // of squared errors
-  const torch::Tensor total = (losses / (1 - times).clamp_min(flow_.least_remaining)).mean();
+  const torch::Tensor total =
+      (losses / (1 - times).clamp_min(flow_.flow().least_remaining())).mean();
   means_.Add(&report->generator, total);
   return total;
 }
 
 bool FlowTrainer::ScoresAnswers(int64_t epoch) const {
-  return static_cast<double>(epoch) >= flow_.energy.from * static_cast<double>(options_.epochs);
+  return static_cast<double>(epoch) >=
+         flow_.energy().from() * static_cast<double>(options_.common.epochs());
 }
 
 bool FlowTrainer::MayBeBest(int64_t epoch) const {
-  return ScoresAnswers(epoch) || !ScoresAnswers(options_.epochs - 1);
+  return ScoresAnswers(epoch) || !ScoresAnswers(options_.common.epochs() - 1);
 }
 
 FlowEpoch FlowTrainer::TakeEpoch() {
@@ -175,19 +180,19 @@ FlowEpoch FlowTrainer::TakeEpoch() {
   };
   FlowEpoch taken = drawn_epoch_ == epoch() && drawn_.valid() ? drawn_.get() : draw(epoch());
   drawn_epoch_ = epoch() + 1;
-  if (drawn_epoch_ < options_.epochs) {
+  if (drawn_epoch_ < options_.common.epochs()) {
     drawn_ = std::async(std::launch::async, draw, drawn_epoch_);
   }
   return taken;
 }
 
 FlowBatch FlowTrainer::NextBatch(base::Random* random, std::vector<FlowExample>* examples) const {
-  if (ScoresAnswers(epoch()) && flow_.own.share > 0) {
+  if (ScoresAnswers(epoch()) && flow_.own().share() > 0) {
     const auto answer = [this](absl::Span<const engine::NetworkInput> inputs) {
       const torch::NoGradGuard no_grad;
       return network::TakeAll(network::AnswerWindows(generator_, manifest_, inputs), inputs);
     };
-    ContinueOwnMotion(dataset_.skeleton, flow_.own, answer, random, examples);
+    ContinueOwnMotion(dataset_.skeleton, flow_.own(), answer, random, examples);
   }
   FlowBatch batch = MakeFlowBatch(manifest_, base_poses_, *examples);
   batch.input = batch.input.To(generator_->device());
@@ -201,14 +206,15 @@ void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
   const bool is_energy = ScoresAnswers(epoch());
   report->whole_answers = is_energy;
   // Answers in use have none of the spread that dropout adds in training.
-  generator_->set_dropout(is_energy ? 0 : flow_.dropout);
-  base::Random random(options_.seed, epoch() + options_.epochs);  // not that of the epoch's clips
+  generator_->set_dropout(is_energy ? 0 : flow_.flow().dropout());
+  base::Random random(options_.common.seed(),
+                      epoch() + options_.common.epochs());  // not that of the epoch's clips
   int64_t step = first_step;
   for (std::vector<FlowExample>& examples : TakeEpoch()) {
     const FlowBatch batch = NextBatch(&random, &examples);
     (is_energy ? EnergyLoss(batch, report) : MatchingLoss(batch, report)).backward();
     optimiser_.Step(step);
-    UpdateAverage(AverageDecay(options_.optimiser.average_decay, step));
+    UpdateAverage(AverageDecay(options_.common.optimiser().average_decay(), step));
     ++step;
   }
   means_.Write(steps_per_epoch_);
@@ -224,7 +230,7 @@ double FlowTrainer::ValidationError(const Example& example) {
 
 std::vector<checkpoint::Tensor> FlowTrainer::BestTensors() {
   network::FlowGenerator best(manifest_);
-  best->SetMeasured(base_poses_, flow_.noise_share * generator_->noise_roots());
+  best->SetMeasured(base_poses_, flow_.flow().noise_share() * generator_->noise_roots());
   CopyBest(best.get());
   return network::StoreParameters(manifest_, best);
 }

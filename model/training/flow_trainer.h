@@ -44,8 +44,8 @@ class LossMeans {
 // Source:  Lipman et al. 2023; docs/decisions/method.md.
 class FlowTrainer : public EpochTrainer {
  public:
-  // `manifest` describes the model to train. Its architecture must be that of options.method, a
-  // FlowTraining.
+  // `manifest` describes the model to train. Its architecture must be that of the options, a
+  // FlowArchitecture.
   FlowTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
               const dataset::Dataset& dataset, std::vector<int> train, std::vector<int> validation);
 
@@ -70,20 +70,20 @@ class FlowTrainer : public EpochTrainer {
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor DrawSource(const FlowBatch& batch) const;
-  // [N] the weight of each clip's loss, 1 without a label; see FlowTraining::class_balance.
+  // [N] the weight of each clip's loss, 1 without a label; see FlowSettings::Flow::class_balance.
   torch::Tensor ClipWeights(const FlowBatch& batch) const;
-  // The scores of feet and hands; see FlowTraining::Energy.
+  // The scores of feet and hands; see FlowSettings::Energy.
   template <typename Add>
   void AddBodyScores(const FlowBatch& batch, const torch::Tensor& answers, const Add& add,
                      EpochReport* report);
 
-  const FlowTraining& flow_;
+  const FlowSettings& flow_;
   const checkpoint::FlowArchitecture& architecture_;
   std::optional<motion::JointPair> hands_;
   int64_t steps_per_epoch_;
   network::FlowGenerator generator_;
   torch::Tensor base_poses_;     // the generator's, in the processor's memory
-  torch::Tensor class_weights_;  // [C] see FlowTraining::class_balance
+  torch::Tensor class_weights_;  // [C] see FlowSettings::Flow::class_balance
   Optimiser optimiser_;
   LossMeans means_;
   int64_t drawn_epoch_ = -1;

@@ -30,38 +30,38 @@ std::vector<torch::optim::OptimizerParamGroup> Groups(
   return groups;
 }
 
-std::unique_ptr<torch::optim::Optimizer> Make(const TrainingOptions::Optimiser& options,
+std::unique_ptr<torch::optim::Optimizer> Make(const CommonSettings::Optimiser& options,
                                               const std::vector<torch::Tensor>& parameters) {
-  if (options.name == "rmsprop") {
+  if (options.name() == CommonSettings::Optimiser::RMSPROP) {
     return std::make_unique<torch::optim::RMSprop>(
         Groups(parameters),
-        torch::optim::RMSpropOptions(options.learning_rate).weight_decay(options.weight_decay));
+        torch::optim::RMSpropOptions(options.learning_rate()).weight_decay(options.weight_decay()));
   }
   auto adam = std::make_unique<torch::optim::AdamW>(
-      Groups(parameters), torch::optim::AdamWOptions(options.learning_rate)
-                              .weight_decay(options.weight_decay)
-                              .betas({kFirstMoment, options.second_moment}));
+      Groups(parameters), torch::optim::AdamWOptions(options.learning_rate())
+                              .weight_decay(options.weight_decay())
+                              .betas({kFirstMoment, options.second_moment()}));
   static_cast<torch::optim::AdamWOptions&>(adam->param_groups()[1].options()).weight_decay(0);
   return adam;
 }
 
 }  // namespace
 
-double ScheduleFactor(const TrainingOptions::Optimiser& options, int64_t step, int64_t steps) {
-  if (options.schedule == "constant") return 1;
+double ScheduleFactor(const CommonSettings::Optimiser& options, int64_t step, int64_t steps) {
+  if (options.schedule() == CONSTANT) return 1;
   const double share = static_cast<double>(step) / static_cast<double>(steps);
-  if (options.schedule == "cosine") {
+  if (options.schedule() == COSINE) {
     const double warm =
-        step < options.warm_up_steps
-            ? static_cast<double>(step + 1) / static_cast<double>(options.warm_up_steps)
+        step < options.warm_up_steps()
+            ? static_cast<double>(step + 1) / static_cast<double>(options.warm_up_steps())
             : 1;
-    return warm * HalfCosine(1, options.last_share, share);
+    return warm * HalfCosine(1, options.last_share(), share);
   }
   if (share < kWarmUpShare) return HalfCosine(kFirstFactor, 1, share / kWarmUpShare);
   return HalfCosine(1, kLastFactor, (share - kWarmUpShare) / (1 - kWarmUpShare));
 }
 
-Optimiser::Optimiser(const TrainingOptions::Optimiser& options,
+Optimiser::Optimiser(const CommonSettings::Optimiser& options,
                      std::vector<torch::Tensor> parameters, int64_t steps)
     : options_(options),
       parameters_(std::move(parameters)),
@@ -75,10 +75,10 @@ void Optimiser::SetLearningRate(double rate) {
 }
 
 void Optimiser::Step(int64_t step) {
-  if (options_.gradient_clip > 0) {
-    torch::nn::utils::clip_grad_norm_(parameters_, options_.gradient_clip);
+  if (options_.gradient_clip() > 0) {
+    torch::nn::utils::clip_grad_norm_(parameters_, options_.gradient_clip());
   }
-  SetLearningRate(options_.learning_rate * ScheduleFactor(options_, step, steps_));
+  SetLearningRate(options_.learning_rate() * ScheduleFactor(options_, step, steps_));
   optimiser_->step();
   optimiser_->zero_grad();
 }

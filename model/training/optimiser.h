@@ -13,12 +13,12 @@ namespace duet::training {
 // The learning rate at a step as a fraction of the maximum. "one_cycle" rises over the first fifth
 // of the run from 1/25 and falls to almost 0, both along a half cosine (Smith, Topin 2018).
 // "cosine" rises linearly over the warm-up steps and falls along a half cosine to last_share.
-double ScheduleFactor(const TrainingOptions::Optimiser& options, int64_t step, int64_t steps);
+double ScheduleFactor(const CommonSettings::Optimiser& options, int64_t step, int64_t steps);
 
 // Adam with decoupled weight decay of matrices, or RMSprop, on a schedule; clips gradients.
 class Optimiser {
  public:
-  Optimiser(const TrainingOptions::Optimiser& options, std::vector<torch::Tensor> parameters,
+  Optimiser(const CommonSettings::Optimiser& options, std::vector<torch::Tensor> parameters,
             int64_t steps);
 
   // Applies the gradients of the parameters as step number `step` (from 0) and clears them.
@@ -29,7 +29,7 @@ class Optimiser {
  private:
   void SetLearningRate(double rate);
 
-  TrainingOptions::Optimiser options_;
+  CommonSettings::Optimiser options_;
   std::vector<torch::Tensor> parameters_;
   int64_t steps_;
   std::unique_ptr<torch::optim::Optimizer> optimiser_;

@@ -15,16 +15,17 @@ int64_t Steps(size_t count, int64_t batch) {
 
 network::Generator MakeGenerator(const TrainingOptions& options,
                                  const checkpoint::Manifest& manifest) {
-  torch::manual_seed(options.seed);
+  torch::manual_seed(options.common.seed());
   network::Generator generator(manifest);
-  const PaperTraining::Dropout& dropout = std::get<PaperTraining>(options.method).dropout;
-  generator->set_dropout(dropout.slices, dropout.encoded);
+  const PaperSettings::Dropout& dropout = options.paper.dropout();
+  generator->set_dropout(dropout.slices(), dropout.encoded());
   return generator;
 }
 
-network::ContinuityForm Continuity(const PaperTraining::Losses& losses) {
-  return losses.continuity_form == "hinge" ? network::ContinuityForm::kHinge
-                                           : network::ContinuityForm::kPathLength;
+network::ContinuityForm Continuity(const PaperSettings::Losses& losses) {
+  return losses.continuity_form() == PaperSettings::Losses::HINGE
+             ? network::ContinuityForm::kHinge
+             : network::ContinuityForm::kPathLength;
 }
 
 }  // namespace
@@ -33,13 +34,14 @@ PaperTrainer::PaperTrainer(const TrainingOptions& options, const checkpoint::Man
                            const dataset::Dataset& dataset, std::vector<int> train,
                            std::vector<int> validation)
     : EpochTrainer(options, manifest, dataset, std::move(train), std::move(validation)),
-      losses_(std::get<PaperTraining>(options.method).losses),
-      steps_per_epoch_(Steps(train_.size(), options.batch)),
+      losses_(options.paper.losses()),
+      steps_per_epoch_(Steps(train_.size(), options.common.batch())),
       generator_(MakeGenerator(options, manifest)),
-      generator_optimiser_(options.optimiser, generator_->parameters(),
-                           steps_per_epoch_ * options.epochs) {
-  if (losses_.adversarial > 0) {
-    adversary_ = std::make_unique<Adversary>(options, manifest, steps_per_epoch_ * options.epochs);
+      generator_optimiser_(options.common.optimiser(), generator_->parameters(),
+                           steps_per_epoch_ * options.common.epochs()) {
+  if (losses_.adversarial() > 0) {
+    adversary_ =
+        std::make_unique<Adversary>(options, manifest, steps_per_epoch_ * options.common.epochs());
   }
   if (std::get<checkpoint::PaperArchitecture>(manifest.architecture).base_pose) {
     generator_->SetBasePoses(ClassMeanPoses(manifest, dataset, train_));
@@ -56,17 +58,17 @@ torch::Tensor PaperTrainer::GeneratorLoss(const TrainingBatch& batch, EpochRepor
     *mean += loss.item<double>() / static_cast<double>(steps_per_epoch_);
   };
   add(1, network::L1Loss(predicted, batch.target, lengths), &report->reconstruction);
-  if (losses_.bone > 0) {
-    add(losses_.bone,
+  if (losses_.bone() > 0) {
+    add(losses_.bone(),
         network::BoneLoss(predicted, batch.follower, lengths, manifest_.model.skeleton.bones),
         &report->bone);
   }
-  if (losses_.continuity > 0) {
-    add(losses_.continuity, network::ContinuityLoss(predicted, lengths, Continuity(losses_)),
+  if (losses_.continuity() > 0) {
+    add(losses_.continuity(), network::ContinuityLoss(predicted, lengths, Continuity(losses_)),
         &report->continuity);
   }
   if (adversary_ != nullptr) {
-    add(losses_.adversarial, adversary_->GeneratorLoss(batch, predicted), &report->adversarial);
+    add(losses_.adversarial(), adversary_->GeneratorLoss(batch, predicted), &report->adversarial);
   }
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
   return total;
@@ -88,7 +90,7 @@ void PaperTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
     if (adversary_ != nullptr) TrainAdversary(batch, step, report);
     GeneratorLoss(batch, report).backward();
     generator_optimiser_.Step(step);
-    UpdateAverage(options_.optimiser.average_decay);
+    UpdateAverage(options_.common.optimiser().average_decay());
     ++step;
   }
 }
@@ -123,9 +125,9 @@ std::vector<std::pair<std::string, torch::optim::Optimizer*>> PaperTrainer::Stat
 
 namespace {
 
-TrainingOptions::Optimiser OptimiserOptions(const TrainingOptions& options) {
-  TrainingOptions::Optimiser optimiser = options.optimiser;
-  optimiser.learning_rate = std::get<PaperTraining>(options.method).discriminator.learning_rate;
+CommonSettings::Optimiser OptimiserOptions(const TrainingOptions& options) {
+  CommonSettings::Optimiser optimiser = options.common.optimiser();
+  optimiser.set_learning_rate(options.paper.discriminator().learning_rate());
   return optimiser;
 }
 
@@ -148,9 +150,9 @@ class Frozen {
 
 Adversary::Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest,
                      int64_t steps)
-    : options_(options), settings_(std::get<PaperTraining>(options.method).discriminator) {
+    : options_(options), settings_(options.paper.discriminator()) {
   Add("discriminator", true, manifest, steps);
-  if (settings_.binary) Add("binary_discriminator", false, manifest, steps);
+  if (settings_.binary()) Add("binary_discriminator", false, manifest, steps);
 }
 
 void Adversary::Add(const std::string& name, bool class_aware, const checkpoint::Manifest& manifest,
@@ -158,10 +160,10 @@ void Adversary::Add(const std::string& name, bool class_aware, const checkpoint:
   network::DiscriminatorOptions sizes;
   sizes.input = 3 * manifest.model.skeleton.joint_count();
   sizes.window_frames = manifest.model.window_frames;
-  sizes.hidden = settings_.hidden;
+  sizes.hidden = settings_.hidden();
   sizes.outputs = class_aware ? manifest.model.class_count() + 1 : 2;
   network::Discriminator network(sizes);
-  network->set_dropout(settings_.dropout);
+  network->set_dropout(settings_.dropout());
   auto optimiser =
       std::make_unique<Optimiser>(OptimiserOptions(options_), network->parameters(), steps);
   critics_.push_back({name, class_aware, network, std::move(optimiser)});
@@ -179,7 +181,7 @@ double Adversary::Train(const TrainingBatch& batch, const torch::Tensor& synthes
                                    critic.network->forward(synthesised, lengths), classes);
     loss.backward();
     critic.optimiser->Step(step);
-    if (settings_.unit_norm_kernels) critic.network->NormaliseKernels();
+    if (settings_.unit_norm_kernels()) critic.network->NormaliseKernels();
     sum += loss.item<double>();
   }
   return sum;

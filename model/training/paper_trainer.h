@@ -27,8 +27,8 @@ namespace duet::training {
 // Threads: not safe to call concurrently.
 class Adversary {
  public:
-  // Requires a PaperTraining with losses.adversarial above 0. `steps` is the number of steps of the
-  // whole run, for the schedule.
+  // Requires losses.adversarial above 0. `steps` is the number of steps of the whole run, for the
+  // schedule.
   Adversary(const TrainingOptions& options, const checkpoint::Manifest& manifest, int64_t steps);
 
   // One step of every discriminator on captured and synthesised followers [N, T, 3 J]. Returns the
@@ -56,7 +56,7 @@ class Adversary {
            int64_t steps);
 
   const TrainingOptions& options_;
-  const PaperTraining::DiscriminatorSettings& settings_;
+  const PaperSettings::Discriminator& settings_;
   std::vector<Critic> critics_;
 };
 
@@ -66,8 +66,8 @@ class Adversary {
 // Source:  paper section 3.4 and 5. The discriminator is frozen in the generator's step.
 class PaperTrainer : public EpochTrainer {
  public:
-  // `manifest` describes the model to train. Its architecture must be that of options.method, a
-  // PaperTraining.
+  // `manifest` describes the model to train. Its architecture must be that of the options, a
+  // PaperArchitecture.
   PaperTrainer(const TrainingOptions& options, const checkpoint::Manifest& manifest,
                const dataset::Dataset& dataset, std::vector<int> train,
                std::vector<int> validation);
@@ -85,7 +85,7 @@ class PaperTrainer : public EpochTrainer {
   torch::Tensor GeneratorLoss(const TrainingBatch& batch, EpochReport* report);
   void TrainAdversary(const TrainingBatch& batch, int64_t step, EpochReport* report);
 
-  const PaperTraining::Losses& losses_;
+  const PaperSettings::Losses& losses_;
   int64_t steps_per_epoch_;
   network::Generator generator_;
   Optimiser generator_optimiser_;

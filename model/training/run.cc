@@ -38,7 +38,7 @@ std::unique_ptr<EpochTrainer> MakeTrainer(const TrainingOptions& options,
                                           const checkpoint::Manifest& manifest,
                                           const dataset::Dataset& dataset, std::vector<int> train,
                                           std::vector<int> validation) {
-  if (std::holds_alternative<PaperTraining>(options.method)) {
+  if (FlowIn(options) == nullptr) {
     return std::make_unique<PaperTrainer>(options, manifest, dataset, std::move(train),
                                           std::move(validation));
   }
@@ -72,7 +72,7 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.model.classes = dataset.classes;
   manifest.model.touching_classes = dataset.TouchingClasses();
   manifest.model.frame_rate_hz = dataset.frame_rate_hz;
-  SetArchitecture(ArchitectureOf(plan.options), &manifest);
+  SetArchitecture(plan.options.architecture, &manifest);
   manifest.parts = dataset.parts;
   manifest.standardisation = plan.options.standardisation;
   manifest.training = Describe(plan.options);
@@ -104,16 +104,16 @@ std::vector<int> HoldBack(const TrainingOptions& options, const dataset::Dataset
   for (const int index : *train) {
     const std::vector<std::string>& people = dataset.sequences[static_cast<size_t>(index)].subjects;
     const bool is_held =
-        std::any_of(options.validation.subjects.begin(), options.validation.subjects.end(),
-                    [&](const std::string& subject) {
+        std::any_of(options.common.validation().subjects().begin(),
+                    options.common.validation().subjects().end(), [&](const std::string& subject) {
                       return std::find(people.begin(), people.end(), subject) != people.end();
                     });
     (is_held ? held : kept).push_back(index);
   }
   *train = kept;
-  if (options.validation.fraction > 0) {
-    const std::vector<int> more =
-        TakeValidation(dataset, options.validation.fraction, options.seed, train);
+  if (options.common.validation().fraction() > 0) {
+    const std::vector<int> more = TakeValidation(dataset, options.common.validation().fraction(),
+                                                 options.common.seed(), train);
     held.insert(held.end(), more.begin(), more.end());
   }
   return held;
@@ -137,15 +137,16 @@ void CutAll(const dataset::Dataset& whole, int frames, int stride, std::vector<i
 // no window of a sequence for validation is trained on.
 dataset::Dataset CutIfAsked(const TrainingOptions& options, const dataset::Dataset& whole,
                             std::vector<int>* train, std::vector<int>* validation) {
-  const FlowTraining* flow = FlowIn(options);
-  if (flow == nullptr || flow->window_seconds == 0) return whole;
+  const FlowSettings* flow = FlowIn(options);
+  if (flow == nullptr || flow->flow().window_seconds() == 0) return whole;
   const auto frames = [&](double seconds) {
     return std::max(2, static_cast<int>(std::lround(seconds * whole.frame_rate_hz)));
   };
   dataset::Dataset cut = whole;
   cut.sequences.clear();
   for (std::vector<int>* indices : {train, validation}) {
-    CutAll(whole, frames(flow->window_seconds), frames(flow->stride_seconds), indices, &cut);
+    CutAll(whole, frames(flow->flow().window_seconds()), frames(flow->flow().stride_seconds()),
+           indices, &cut);
   }
   return cut;
 }
@@ -184,10 +185,10 @@ absl::Status StartFrom(const RunPlan& plan, const checkpoint::Checkpoint& from,
 absl::Status AddCritic(const RunPlan& plan, const dataset::Dataset& dataset,
                        const std::vector<int>& train, std::ostream* progress,
                        checkpoint::Checkpoint* checkpoint) {
-  const FlowTraining* flow = FlowIn(plan.options);
-  if (flow == nullptr || flow->critic.steps == 0) return absl::OkStatus();
+  const FlowSettings* flow = FlowIn(plan.options);
+  if (flow == nullptr || flow->critic().steps() == 0) return absl::OkStatus();
   DUET_TRY(TrainedCritic critic,
-           TrainCritic(*flow, plan.options.seed, *checkpoint, dataset, train));
+           TrainCritic(*flow, plan.options.common.seed(), *checkpoint, dataset, train));
   DUET_TRY(const auto synthesizer, SynthesizerOf(*checkpoint));
   DUET_TRY(checkpoint->manifest.model.default_seeds,
            ChooseDefaultSeeds(*synthesizer, dataset, train));
@@ -301,9 +302,9 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   const dataset::Dataset dataset = CutIfAsked(plan.options, whole, &train, &validation);
   checkpoint::Manifest manifest = MakeManifest(plan, whole);
   manifest.model.window_frames = dataset.LongestFrameCount();
-  if (const FlowTraining* flow = FlowIn(plan.options)) {
+  if (const FlowSettings* flow = FlowIn(plan.options)) {
     manifest.model.lookahead_frames =
-        static_cast<int>(std::lround(flow->lookahead_seconds * whole.frame_rate_hz));
+        static_cast<int>(std::lround(flow->flow().lookahead_seconds() * whole.frame_rate_hz));
   }
   DUET_RETURN_IF_ERROR(checkpoint::CheckManifest(manifest));
   std::error_code error;
@@ -326,7 +327,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   const fs::path log = plan.folder / "log.csv";
   DUET_RETURN_IF_ERROR(ResumeLog(log, trainer->epoch()));
   *progress << plan.title << ": " << train.size() << " sequences, "
-            << plan.options.epochs * trainer->steps_per_epoch() << " steps\n";
+            << plan.options.common.epochs() * trainer->steps_per_epoch() << " steps\n";
   EpochReport report;
   while (!trainer->Finished()) {
     const bool first = report.epoch == 0, scored = report.whole_answers;

@@ -69,10 +69,10 @@ void DrawClass(base::Random* random, dataset::Sequence* sequence) {
 
 }  // namespace
 
-StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random) {
+StartKnowledge DrawStart(const CommonSettings::Start& start, base::Random* random) {
   const double draw = random->Uniform(0, 1);
-  if (draw < start.pose) return StartKnowledge::kPose;
-  return draw < start.pose + start.root ? StartKnowledge::kRoot : StartKnowledge::kNone;
+  if (draw < start.pose()) return StartKnowledge::kPose;
+  return draw < start.pose() + start.root() ? StartKnowledge::kRoot : StartKnowledge::kNone;
 }
 
 std::vector<dataset::Sequence> AugmentAll(const dataset::Dataset& dataset,
@@ -82,7 +82,7 @@ std::vector<dataset::Sequence> AugmentAll(const dataset::Dataset& dataset,
   for (int index : train) {
     dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(index)];
     DrawClass(random, &sequence);
-    sequences.push_back(Augment(dataset, sequence, options.augmentation, random));
+    sequences.push_back(Augment(dataset, sequence, options.common.augmentation(), random));
   }
   return sequences;
 }
@@ -135,16 +135,17 @@ std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const std::vector<int>& train,
                                        const TrainingOptions& options, int64_t epoch) {
-  base::Random random(options.seed, epoch);
+  base::Random random(options.common.seed(), epoch);
   const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
-  const std::vector<std::vector<int>> pieces = BatchesByLength(sequences, options.batch, &random);
-  const double graded_labels = std::get<PaperTraining>(options.method).graded_labels;
+  const std::vector<std::vector<int>> pieces =
+      BatchesByLength(sequences, options.common.batch(), &random);
+  const double graded_labels = options.paper.graded_labels();
   std::vector<TrainingBatch> batches;
   for (const std::vector<int>& piece : pieces) {
     std::vector<Example> examples;
     for (int index : piece) {
       const StartKnowledge start = manifest.model.accepts_follower_start
-                                       ? DrawStart(options.start, &random)
+                                       ? DrawStart(options.common.start(), &random)
                                        : StartKnowledge::kNone;
       examples.push_back(CapturedExample(dataset, sequences[static_cast<size_t>(index)], start));
       if (random.Chance(graded_labels)) {
@@ -182,7 +183,7 @@ int Shifted(int frame, int frames, double deviation, base::Random* random) {
 }  // namespace
 
 std::vector<float> DrawFrameLabels(const dataset::Sequence& sequence, int classes,
-                                   const FlowTraining::FrameLabels& options, base::Random* random) {
+                                   const FlowSettings::FrameLabels& options, base::Random* random) {
   const int frames = sequence.pair.leader.frame_count();
   std::vector<dataset::LabelSpan> spans = sequence.labels;
   if (spans.empty()) spans.push_back({sequence.interaction_class, 0, frames});
@@ -192,13 +193,13 @@ std::vector<float> DrawFrameLabels(const dataset::Sequence& sequence, int classe
                    static_cast<std::size_t>(c)];
   };
   for (const dataset::LabelSpan& span : spans) {
-    const int begin = Shifted(span.begin, frames, options.shift, random);
-    const int end = Shifted(span.end, frames, options.shift, random);
+    const int begin = Shifted(span.begin, frames, options.shift(), random);
+    const int end = Shifted(span.end, frames, options.shift(), random);
     for (int t = begin; t < end; ++t) at(t, span.interaction_class) = 1;
   }
   for (int c = 0; c < classes; ++c) {
-    const bool unlabelled = random->Chance(options.unlabelled);
-    const bool avoided = random->Chance(options.avoided);
+    const bool unlabelled = random->Chance(options.unlabelled());
+    const bool avoided = random->Chance(options.avoided());
     for (int t = 0; t < frames; ++t) {
       if (unlabelled) at(t, c) = 0;
       if (avoided && !unlabelled && at(t, c) == 0) at(t, c) = -1;

@@ -42,7 +42,7 @@ struct TrainingBatch {
 engine::SynthesisWindow MakeWindow(const dataset::Dataset& dataset, const Example& example);
 
 // Draws the follower start of a clip by the probabilities of `start`.
-StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random);
+StartKnowledge DrawStart(const CommonSettings::Start& start, base::Random* random);
 
 // Every training sequence, augmented.
 std::vector<dataset::Sequence> AugmentAll(const dataset::Dataset& dataset,
@@ -59,7 +59,7 @@ TrainingBatch MakeBatch(const checkpoint::Manifest& manifest, const dataset::Dat
                         const std::vector<Example>& examples);
 
 // The batches of one epoch: every training sequence once, augmented, clips of similar length
-// together. Depends only on options, data and epoch. Requires a PaperTraining.
+// together. Depends only on options, data and epoch. Requires a PaperArchitecture.
 std::vector<TrainingBatch> SampleEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const std::vector<int>& train,
@@ -90,7 +90,7 @@ void GradeLabels(const dataset::Dataset& dataset, const std::vector<dataset::Seq
 // of the class, -1 where it is absent and avoided. A sequence without a time line has its class in
 // every frame. Returns [frames, classes].
 std::vector<float> DrawFrameLabels(const dataset::Sequence& sequence, int classes,
-                                   const FlowTraining::FrameLabels& options, base::Random* random);
+                                   const FlowSettings::FrameLabels& options, base::Random* random);
 
 }  // namespace duet::training
 

@@ -236,24 +236,24 @@ Window DrawMidst(int earliest, int captured, int most, base::Random* random) {
 
 enum class Kind { kPauses, kEnd, kMotionless, kUnlabelled, kCaptured };
 
-Kind DrawKind(const FlowTraining::Stillness& options, base::Random* random) {
+Kind DrawKind(const FlowSettings::Stillness& options, base::Random* random) {
   double draw = random->Uniform();
-  for (const auto& [kind, share] :
-       {std::pair{Kind::kUnlabelled, options.unlabelled},
-        std::pair{Kind::kMotionless, options.motionless}, std::pair{Kind::kEnd, options.ends}}) {
+  for (const auto& [kind, share] : {std::pair{Kind::kUnlabelled, options.unlabelled()},
+                                    std::pair{Kind::kMotionless, options.motionless()},
+                                    std::pair{Kind::kEnd, options.ends()}}) {
     if (draw < share) return kind;
     draw -= share;
   }
-  return random->Chance(options.pauses) ? Kind::kPauses : Kind::kCaptured;
+  return random->Chance(options.pauses()) ? Kind::kPauses : Kind::kCaptured;
 }
 
 }  // namespace
 
 absl::Status CheckStillness(const TrainingOptions& options, const dataset::Dataset& dataset) {
-  const FlowTraining* flow = FlowIn(options);
-  if (flow == nullptr || !flow->stillness.used()) return absl::OkStatus();
+  const FlowSettings* flow = FlowIn(options);
+  if (flow == nullptr || !UsesStillness(*flow)) return absl::OkStatus();
   const body::Body body = body::FindBody(dataset.skeleton);
-  if (flow->architecture.frame_labels) {
+  if (std::get<checkpoint::FlowArchitecture>(options.architecture).frame_labels) {
     return absl::InvalidArgumentError(
         "stillness: expected shares of 0 for a generator with frame_labels, got others");
   }
@@ -265,7 +265,7 @@ absl::Status CheckStillness(const TrainingOptions& options, const dataset::Datas
       "stillness: expected a skeleton with hips, two legs and arms, got one without");
 }
 
-StillClip AddStillness(const motion::Skeleton& skeleton, const FlowTraining::Stillness& options,
+StillClip AddStillness(const motion::Skeleton& skeleton, const FlowSettings::Stillness& options,
                        double frame_rate_hz, int most_frames, base::Random* random,
                        dataset::Sequence sequence) {
   StillClip clip;

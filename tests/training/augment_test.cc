@@ -26,15 +26,15 @@ TEST(MirrorTest, ExchangesSidesAndIsItsOwnInverse) {
   EXPECT_EQ(mirrored.pair.follower.poses, dataset.sequences[0].pair.follower.poses);
 }
 
-dataset::Sequence AugmentedBy(const TrainingOptions::Augmentation& options, int index) {
+dataset::Sequence AugmentedBy(const CommonSettings::Augmentation& options, int index) {
   const dataset::Dataset dataset = MadeUpDataset();
   base::Random random(3, 1);
   return Augment(dataset, dataset.sequences[static_cast<size_t>(index)], options, &random);
 }
 
 TEST(AugmentTest, SwapsRolesOnlyInSymmetricClasses) {
-  TrainingOptions::Augmentation options;
-  options.swap_roles = 1;
+  CommonSettings::Augmentation options;
+  options.set_swap_roles(1);
   const dataset::Dataset dataset = MadeUpDataset();
   EXPECT_EQ(AugmentedBy(options, 1).pair.leader.poses, dataset.sequences[1].pair.follower.poses);
   EXPECT_EQ(AugmentedBy(options, 0).pair.leader.poses, dataset.sequences[0].pair.leader.poses);
@@ -43,19 +43,19 @@ TEST(AugmentTest, SwapsRolesOnlyInSymmetricClasses) {
 TEST(AugmentTest, MirrorsNoHandedClass) {
   const dataset::Dataset dataset = MadeUpDataset();
   ASSERT_EQ(dataset.handed, (std::vector<bool>{false, true, true}));
-  const auto is_mirrored = [&](const TrainingOptions::Augmentation& options, int index) {
+  const auto is_mirrored = [&](const CommonSettings::Augmentation& options, int index) {
     const motion::Poses& before = dataset.sequences[static_cast<size_t>(index)].pair.leader.poses;
     return AugmentedBy(options, index).pair.leader.poses != before;
   };
-  TrainingOptions::Augmentation options;
-  options.mirror = 1;
+  CommonSettings::Augmentation options;
+  options.set_mirror(1);
   EXPECT_TRUE(is_mirrored(options, 0));
   EXPECT_FALSE(is_mirrored(options, 2));
 }
 
 TEST(AugmentTest, BodyScaleKeepsProportionsOfEachPerson) {
-  TrainingOptions::Augmentation options;
-  options.body_scale = 0.2;
+  CommonSettings::Augmentation options;
+  options.set_body_scale(0.2);
   const dataset::Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
   const std::vector<motion::Bone> bones = motion::SbuSkeleton().bones;
   const double scale = LengthOfBone(after.pair.follower, 0, bones[0]) /
@@ -70,8 +70,8 @@ TEST(AugmentTest, BodyScaleKeepsProportionsOfEachPerson) {
 }
 
 TEST(AugmentTest, CropKeepsTheSamePartOfBothPeople) {
-  TrainingOptions::Augmentation options;
-  options.crop = 1;
+  CommonSettings::Augmentation options;
+  options.set_crop(1);
   const dataset::Sequence before = MadeUpDataset().sequences[6], after = AugmentedBy(options, 6);
   const int frames = after.pair.leader.frame_count();
   EXPECT_EQ(after.pair.follower.frame_count(), frames);
@@ -87,8 +87,8 @@ TEST(AugmentTest, CropAndWarpMoveTheTimeLine) {
   dataset::Sequence before = dataset.sequences[6];
   const int frames = before.pair.leader.frame_count();
   before.labels = {{1, 0, 3}};
-  TrainingOptions::Augmentation options;
-  options.crop = 1;
+  CommonSettings::Augmentation options;
+  options.set_crop(1);
   base::Random random(3, 1);
   bool cropped = false;
   for (int draw = 0; draw < 50; ++draw) {
@@ -102,8 +102,8 @@ TEST(AugmentTest, CropAndWarpMoveTheTimeLine) {
   EXPECT_TRUE(cropped);
 
   before.labels = {{1, frames / 2, frames}};
-  options.crop = 0;
-  options.time_warp = 0.5;
+  options.set_crop(0);
+  options.set_time_warp(0.5);
   bool is_warped = false;
   for (int draw = 0; draw < 20; ++draw) {
     const dataset::Sequence after = Augment(dataset, before, options, &random);
@@ -116,8 +116,8 @@ TEST(AugmentTest, CropAndWarpMoveTheTimeLine) {
 }
 
 TEST(AugmentTest, TimeWarpKeepsBothEnds) {
-  TrainingOptions::Augmentation options;
-  options.time_warp = 0.5;
+  CommonSettings::Augmentation options;
+  options.set_time_warp(0.5);
   const dataset::Sequence before = MadeUpDataset().sequences[0], after = AugmentedBy(options, 0);
   EXPECT_NE(after.pair.leader.frame_count(), before.pair.leader.frame_count());
   EXPECT_EQ(after.pair.leader.frame_count(), after.pair.follower.frame_count());

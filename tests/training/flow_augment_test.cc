@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "absl/strings/str_cat.h"
 #include "model/motion/limb_lengths.h"
 #include "model/training/flow_batches.h"
 #include "tests/support/sample_motion.h"
 #include "tests/training/made_up_dataset.h"
+#include "tests/training/test_options.h"
 
 namespace duet::training {
 namespace {
@@ -41,7 +43,7 @@ Told Standing(int settled) {
   return told;
 }
 
-void Drift(const FlowTraining::Drift& options, Told* told) {
+void Drift(const FlowSettings::Drift& options, Told* told) {
   base::Random random(1, 0);
   AddDrift(told->skeleton, options, &random, &told->input, &told->target);
 }
@@ -54,13 +56,12 @@ float Off(const Poses& poses, const Poses& captured, int frame) {
   return most;
 }
 
+constexpr char kNoDrift[] = "tilt: 0 bend: 0 turn: 0 root: 0 height: 0 joints: 0";
+
 TEST(Drift, TargetReturnsFromEachErrorToTheCapturedMotion) {
-  using Options = FlowTraining::Drift;
-  for (double Options::*error : {&Options::tilt, &Options::bend, &Options::turn, &Options::root,
-                                 &Options::height, &Options::joints}) {
-    Options options;
-    options.*error = 0.3;
-    options.frames = 10;
+  for (const char* error : {"tilt", "bend", "turn", "root", "height", "joints"}) {
+    FlowSettings::Drift options = Settings<FlowSettings::Drift>(kNoDrift);
+    Change(absl::StrCat(error, ": 0.3 frames: 10"), &options);
     Told told = Standing(4);
     Drift(options, &told);
     for (int t = 0; t < 4; ++t) {
@@ -76,8 +77,8 @@ TEST(Drift, TargetReturnsFromEachErrorToTheCapturedMotion) {
 }
 
 TEST(Drift, BendDoesNotMoveTheLegs) {
-  FlowTraining::Drift options;
-  options.bend = 0.5;
+  FlowSettings::Drift options = Settings<FlowSettings::Drift>(kNoDrift);
+  options.set_bend(0.5);
   Told told = Standing(2);
   Drift(options, &told);
   for (const char* name : {"left_knee", "left_foot", "right_knee", "right_foot"}) {
@@ -102,7 +103,7 @@ FlowExample Swaying(int known) {
   return example;
 }
 
-FlowExample Hidden(const FlowTraining::Live& live, int known, uint64_t seed) {
+FlowExample Hidden(const FlowSettings::Live& live, int known, uint64_t seed) {
   base::Random random(seed);
   FlowExample example = Swaying(known);
   HideFuture(motion::SbuSkeleton(), kRate, live, &random, &example);
@@ -116,11 +117,8 @@ int CommonFrames(const Poses& a, const Poses& b) {
   return count;
 }
 
-FlowTraining::Live ExactlyAtTheLastKnownFrame() {
-  FlowTraining::Live live;
-  live.remade_seconds = live.delay_seconds = 0;
-  live.future_seconds = 1;
-  return live;
+FlowSettings::Live ExactlyAtTheLastKnownFrame() {
+  return Settings<FlowSettings::Live>("remade_seconds: 0 delay_seconds: 0 future_seconds: 1");
 }
 
 TEST(HideFuture, LeaderComesToRestLabelsStayAndTheTargetGoesOn) {
@@ -141,9 +139,9 @@ TEST(HideFuture, LeaderComesToRestLabelsStayAndTheTargetGoesOn) {
 }
 
 TEST(HideFuture, PresentAndDelayAreDrawnUpToTheirMost) {
-  FlowTraining::Live live;
-  live.remade_seconds = 4 / kRate;
-  live.delay_seconds = 3 / kRate;
+  FlowSettings::Live live;
+  live.set_remade_seconds(4 / kRate);
+  live.set_delay_seconds(3 / kRate);
   const Poses captured = Swaying(kKnown).input.leader;
   int least = kFrames, most = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
@@ -172,15 +170,11 @@ std::vector<Poses> Aside(absl::Span<const engine::NetworkInput> inputs) {
   return answers;
 }
 
-FlowTraining::Own Always() {
-  FlowTraining::Own own;
-  own.share = 1;
-  own.most_frames = 4;
-  own.return_frames = 8;
-  return own;
+FlowSettings::Own Always() {
+  return Settings<FlowSettings::Own>("share: 1 most_frames: 4 return_frames: 8");
 }
 
-FlowExample Continued(const FlowTraining::Own& own, uint64_t seed) {
+FlowExample Continued(const FlowSettings::Own& own, uint64_t seed) {
   base::Random random(seed);
   std::vector<FlowExample> examples = {Swaying(kKnown)};
   ContinueOwnMotion(motion::SbuSkeleton(), own, Aside, &random, &examples);

@@ -10,23 +10,22 @@ namespace duet::training {
 inline TrainingOptions SmallFlowOptions() {
   TrainingOptions options;
   options.standardisation = motion::StandardOrigin::kFirstFrame;
-  checkpoint::FlowArchitecture& architecture = options.method.emplace<FlowTraining>().architecture;
-  architecture = test::SmallFlow();
+  checkpoint::FlowArchitecture architecture = test::SmallFlow();
   architecture.width = 16;
   architecture.blocks = 1;
   architecture.feed_forward = 16;
   architecture.reach = 8;
-  FlowOf(&options).passes = 2;
-  options.optimiser.schedule = "cosine";
-  options.optimiser.second_moment = 0.99;
-  options.optimiser.average_decay = 0.9;
-  options.optimiser.gradient_clip = 1;
-  options.epochs = 4;
-  options.batch = 3;
-  options.seed = 5;
-  options.augmentation.mirror = 0.5;
-  options.augmentation.noise = 0.01;
-  options.start = {0.1, 0.5};
+  options.architecture = architecture;
+  options.flow = Settings<FlowSettings>(R"(
+      flow { passes: 2 least_steps: 0 }
+      drift { share: 0 })");
+  options.common = Settings<CommonSettings>(R"(
+      optimiser { schedule: COSINE second_moment: 0.99 average_decay: 0.9 gradient_clip: 1 }
+      epochs: 4
+      batch: 3
+      seed: 5
+      augmentation { mirror: 0.5 noise: 0.01 }
+      start { root: 0.1 pose: 0.5 })");
   return options;
 }
 

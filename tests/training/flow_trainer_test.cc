@@ -48,12 +48,13 @@ class FlowTrainerTest : public ::testing::Test {
 
 TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   // With all that is drawn at random.
-  options_.start = {0, 1};
-  FlowTraining& flow = FlowOf(&options_);
-  flow.several_known = 1;
-  flow.own.share = flow.live.share = flow.drift.share = 0.5;
-  flow.stillness = {0.5, 0.2, 0.2, 0.2, 0.5};
-  flow.energy.from = 0.5;
+  Change("start { root: 0 pose: 1 }", &options_.common);
+  Change(R"(
+      flow { several_known: 1 }
+      own { share: 0.5 } live { share: 0.5 } drift { share: 0.5 }
+      stillness { pauses: 0.5 ends: 0.2 motionless: 0.2 unlabelled: 0.2 clean: 0.5 }
+      energy { from: 0.5 })",
+         &options_.flow);
   FlowTrainer straight = Make();
   for (int i = 0; i < 4; ++i) straight.RunEpoch();
   {
@@ -73,11 +74,9 @@ TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
 }
 
 TEST_F(FlowTrainerTest, ClipsOfStillnessHaveTheirStartsAndLabels) {
-  FlowOf(&options_).stillness.motionless = 0.5;
-  FlowOf(&options_).stillness.unlabelled = 0.4;
-  FlowOf(&options_).unlabelled = 0;
-  FlowOf(&options_).passes = 40;
-  options_.start = {0, 0};
+  Change("stillness { motionless: 0.5 unlabelled: 0.4 } flow { unlabelled: 0 passes: 40 }",
+         &options_.flow);
+  options_.common.clear_start();
   int unlabelled = 0, told = 0, all = 0;
   for (const auto& batch : DrawFlowEpoch(manifest_, dataset_, AllOf(dataset_), options_, 0)) {
     for (const FlowExample& example : batch) {
@@ -91,11 +90,8 @@ TEST_F(FlowTrainerTest, ClipsOfStillnessHaveTheirStartsAndLabels) {
 }
 
 TEST_F(FlowTrainerTest, LearnsToAnswer) {
-  options_.epochs = 12;
-  options_.optimiser.warm_up_steps = 5;
-  FlowOf(&options_).passes = 10;
-  FlowOf(&options_).bone_weight = 1;
-  FlowOf(&options_).energy.from = 1;
+  Change("epochs: 12 optimiser { warm_up_steps: 5 }", &options_.common);
+  Change("flow { passes: 10 bone_weight: 1 } energy { from: 1 }", &options_.flow);
   FlowTrainer trainer = Make({0});
   const EpochReport before = trainer.RunEpoch();
   EpochReport after;
@@ -107,20 +103,20 @@ TEST_F(FlowTrainerTest, LearnsToAnswer) {
 }
 
 TEST_F(FlowTrainerTest, EnergyScoreHasNoDropout) {
-  FlowOf(&options_).energy.from = 0;
-  FlowOf(&options_).dropout = 0.1;
+  options_.flow.mutable_energy()->set_from(0);
+  options_.flow.mutable_flow()->set_dropout(0.1);
   const double loss = Make().RunEpoch().generator;
-  FlowOf(&options_).dropout = 0.5;
+  options_.flow.mutable_flow()->set_dropout(0.5);
   EXPECT_EQ(Make().RunEpoch().generator, loss);
 }
 
 TEST_F(FlowTrainerTest, FewClipsGetMorePassesUntilTheLeastSteps) {
   // 7 sequences in batches of 3: 3 steps a pass; 4 epochs.
-  FlowOf(&options_).passes = 2;
-  FlowOf(&options_).least_steps = 24;
+  options_.flow.mutable_flow()->set_passes(2);
+  options_.flow.mutable_flow()->set_least_steps(24);
   EXPECT_EQ(PassesPerEpoch(options_, 7), 2);
   EXPECT_EQ(StepsPerEpoch(options_, 7), 6);
-  FlowOf(&options_).least_steps = 25;
+  options_.flow.mutable_flow()->set_least_steps(25);
   EXPECT_EQ(PassesPerEpoch(options_, 7), 3);
   EXPECT_EQ(StepsPerEpoch(options_, 7), 9);
   EXPECT_EQ(Make().steps_per_epoch(), 9);
@@ -129,9 +125,10 @@ TEST_F(FlowTrainerTest, FewClipsGetMorePassesUntilTheLeastSteps) {
 }
 
 TEST_F(FlowTrainerTest, KeepsTheBestOfTheEpochsThatScoreWholeAnswers) {
-  options_.epochs = 6;
-  options_.optimiser.learning_rate = 0;  // all epochs are equally good: the first choice stays
-  FlowOf(&options_).energy.from = 0.5;
+  options_.common.set_epochs(6);
+  options_.common.mutable_optimiser()->set_learning_rate(
+      0);  // all epochs are equally good: the first choice stays
+  options_.flow.mutable_energy()->set_from(0.5);
   FlowTrainer trainer = Make({0});
   std::vector<int64_t> best;
   std::vector<bool> scored;
@@ -141,7 +138,7 @@ TEST_F(FlowTrainerTest, KeepsTheBestOfTheEpochsThatScoreWholeAnswers) {
   }
   EXPECT_EQ(scored, (std::vector<bool>{false, false, false, true, true, true}));
   EXPECT_EQ(best, (std::vector<int64_t>{1, 2, 3, 4, 4, 4}));
-  FlowOf(&options_).energy.from = 1;
+  options_.flow.mutable_energy()->set_from(1);
   FlowTrainer matching = Make({0});
   while (!matching.Finished()) matching.RunEpoch();
   EXPECT_EQ(matching.best_epoch(), 1);
@@ -149,7 +146,7 @@ TEST_F(FlowTrainerTest, KeepsTheBestOfTheEpochsThatScoreWholeAnswers) {
 
 TEST_F(FlowTrainerTest, CheckpointHasItsShareOfTheNoise) {
   const auto noise = [this](double share) {
-    std::get<FlowTraining>(options_.method).noise_share = share;
+    options_.flow.mutable_flow()->set_noise_share(share);
     for (const checkpoint::Tensor& tensor : Make().BestTensors()) {
       if (tensor.name == "noise.roots") return tensor.values;
     }
@@ -161,10 +158,8 @@ TEST_F(FlowTrainerTest, CheckpointHasItsShareOfTheNoise) {
 }
 
 TEST_F(FlowTrainerTest, DrawsEveryKindOfStartWithItsProbability) {
-  options_.start = {0.25, 0.5};
-  FlowOf(&options_).several_known = 0.5;
-  FlowOf(&options_).unlabelled = 0.2;
-  FlowOf(&options_).passes = 40;
+  Change("start { root: 0.25 pose: 0.5 }", &options_.common);
+  Change("flow { several_known: 0.5 unlabelled: 0.2 passes: 40 }", &options_.flow);
   double clips = 0, roots = 0, poses = 0, several = 0, unlabelled = 0;
   for (const FlowBatch& batch : Sample(0)) {
     const int64_t width = batch.input.start.size(1);
@@ -183,9 +178,8 @@ TEST_F(FlowTrainerTest, DrawsEveryKindOfStartWithItsProbability) {
 }
 
 TEST_F(FlowTrainerTest, LiveClipsHaveSeveralKnownFramesAndHideTheLeadersFuture) {
-  options_.start = {0, 0};
-  FlowOf(&options_).live.share = FlowOf(&options_).live.several_known = 1;
-  FlowOf(&options_).live.delay_seconds = 0;
+  options_.common.clear_start();
+  Change("live { share: 1 several_known: 1 delay_seconds: 0 }", &options_.flow);
   for (const FlowBatch& batch : Sample(0)) {
     EXPECT_TRUE(batch.live.all().item<bool>());
     EXPECT_GE(batch.input.known_count.min().item<int64_t>(), 2);
@@ -219,9 +213,9 @@ TEST_F(FlowTrainerTest, ClassBalanceCountsErrorsRelativeToTheSpreadOfTheClass) {
   }
   const torch::Tensor spreads = MeasureFollowers(manifest_, dataset_, AllOf(dataset_), 0).spreads;
   EXPECT_NEAR((spreads[2] / spreads[0]).item<float>(), 10, 1);
-  FlowOf(&options_).energy.from = 0;
+  options_.flow.mutable_energy()->set_from(0);
   const double in_metres = Make().RunEpoch().reconstruction;
-  FlowOf(&options_).class_balance = 1;
+  options_.flow.mutable_flow()->set_class_balance(1);
   // The weights of the classes are 1.4, 1.4 and .14.
   EXPECT_LT(Make().RunEpoch().reconstruction, in_metres);
 }

@@ -4,6 +4,7 @@
 
 #include "model/training/sampler.h"
 #include "tests/support/matchers.h"
+#include "tests/training/test_options.h"
 
 namespace duet::training {
 namespace {
@@ -45,15 +46,17 @@ TEST(FrameLabelsTest, WithoutATimeLineTheClassIsInEveryFrame) {
 
 TEST(FrameLabelsTest, AvoidedClassesAreBelowZeroWhereTheyAreAbsent) {
   base::Random random(1);
-  const std::vector<float> weights = DrawFrameLabels(Labelled(), kClasses, {0, 0, 1}, &random);
+  const auto options = Settings<FlowSettings::FrameLabels>("avoided: 1");
+  const std::vector<float> weights = DrawFrameLabels(Labelled(), kClasses, options, &random);
   EXPECT_THAT(OfClass(weights, 0), ElementsAre(1, 1, 1, 1, 1, -1, -1, -1));
 }
 
 TEST(FrameLabelsTest, OnlyEdgesWithinTheClipShift) {
   base::Random random(1);
   bool shifted = false;
+  const auto options = Settings<FlowSettings::FrameLabels>("shift: 2");
   for (int draw = 0; draw < 50; ++draw) {
-    const std::vector<float> weights = DrawFrameLabels(Labelled(), kClasses, {2, 0, 0}, &random);
+    const std::vector<float> weights = DrawFrameLabels(Labelled(), kClasses, options, &random);
     const std::vector<float> first = OfClass(weights, 0);
     EXPECT_TRUE(std::is_sorted(first.rbegin(), first.rend()));
     const std::vector<float> second = OfClass(weights, 1);

@@ -25,23 +25,26 @@ TEST(TrainingOptionsTest, ReplacementsReachTheirField) {
   const auto options = ParseConfig(
       DefaultJson(), {{"losses.bone", "0.25"}, {"optimiser.name", "rmsprop"}, {"epochs", "7"}});
   ASSERT_THAT(options, IsOk());
-  EXPECT_EQ(std::get<PaperTraining>(options->method).losses.bone, 0.25);
-  EXPECT_EQ(options->optimiser.name, "rmsprop");
-  EXPECT_EQ(options->epochs, 7);
+  EXPECT_EQ(options->paper.losses().bone(), 0.25);
+  EXPECT_EQ(options->common.optimiser().name(), CommonSettings::Optimiser::RMSPROP);
+  EXPECT_EQ(options->common.epochs(), 7);
+  EXPECT_EQ(Describe(*options).at("optimiser.name"), "rmsprop");
   EXPECT_EQ(Describe(*options).at("losses.bone"), "0.25");
 }
 
 // A state is only valid for exactly equal settings.
 TEST(TrainingOptionsTest, SettingsAreDescribedToTheLastDigit) {
   TrainingOptions options;
-  options.optimiser.learning_rate = 0.0010000001;
+  options.common.mutable_optimiser()->set_learning_rate(0.0010000001);
   EXPECT_EQ(Describe(options).at("optimiser.learning_rate"), "0.0010000001");
-  std::get<PaperTraining>(options.method).losses.bone = 1.0 / 3;
+  options.paper.mutable_losses()->set_bone(1.0 / 3);
   EXPECT_EQ(std::stod(Describe(options).at("losses.bone")), 1.0 / 3);
   EXPECT_EQ(Describe(options).at("augmentation.crop"), "0");
+  options.common.set_seed(uint64_t{1} << 62);
+  EXPECT_EQ(Describe(options).at("seed"), "4611686018427387904");
 }
 
-TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {
+TEST(TrainingOptionsTest, EverySettingIsReadAndDescribed) {
   const auto options = ParseConfig(DefaultJson());
   ASSERT_THAT(options, IsOk());
   for (const auto& [path, value] : Describe(*options)) {
@@ -49,10 +52,10 @@ TEST(TrainingOptionsTest, EverySettingIsRequiredAndDescribed) {
   }
 }
 
-TEST(TrainingOptionsTest, EverySettingOfAFlowIsRequiredAndDescribed) {
+TEST(TrainingOptionsTest, EverySettingOfAFlowIsReadAndDescribed) {
   const auto options = ParseConfig(FlowJson());
   ASSERT_THAT(options, IsOk());
-  ASSERT_TRUE(std::holds_alternative<FlowTraining>(options->method));
+  ASSERT_TRUE(std::holds_alternative<checkpoint::FlowArchitecture>(options->architecture));
   const auto described = Describe(*options);
   EXPECT_EQ(described.at("flow.several_known"), "0.4");
   EXPECT_EQ(described.at("optimiser.warm_up_steps"), "100");
@@ -75,20 +78,52 @@ TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
   EXPECT_THAT(refusal("leaders.share", "0.05"), HasSubstr("leaders.share"));
   EXPECT_THAT(refusal("stillness.ends", "2"), HasSubstr("stillness.ends"));
   EXPECT_THAT(refusal("optimiser.schedule", "constant"),
-              HasSubstr("optimiser: unknown field \"last_share\""));
+              HasSubstr("optimiser: unknown field \"second_moment\""));
   const auto tuned = ParseConfig(FlowJson(), {{"generator.steps", "5"}});
   ASSERT_THAT(tuned, IsOk());
-  EXPECT_EQ(std::get<FlowTraining>(tuned->method).architecture.steps, 5);
+  EXPECT_EQ(std::get<checkpoint::FlowArchitecture>(tuned->architecture).steps, 5);
 }
 
-TEST(TrainingOptionsTest, ConfigurationsOfVersionOneAreRead) {
-  nlohmann::json old = nlohmann::json::parse(FlowJson());
-  old.erase("leaders");
-  old.erase("stillness");
-  const auto options = ParseConfig(old.dump());
+TEST(TrainingOptionsTest, AbsentSettingsHaveTheirDefaults) {
+  nlohmann::json config = nlohmann::json::parse(FlowJson());
+  config.erase("start");
+  config["drift"] = {{"tilt", 0.1}};
+  const auto options = ParseConfig(config.dump());
   ASSERT_THAT(options, IsOk());
+  EXPECT_EQ(options->common.start().pose(), 0);
+  EXPECT_EQ(Describe(*options).at("drift.tilt"), "0.1");
+  EXPECT_EQ(Describe(*options).at("drift.turn"), "0.4");
   EXPECT_EQ(Describe(*options).at("leaders.share"), "0");
-  EXPECT_EQ(Describe(*options).at("stillness.pauses"), "0");
+}
+
+TEST(TrainingOptionsTest, SettingsWithoutADefaultAreRequired) {
+  for (const char* name : {"generator", "standardisation", "epochs", "losses", "graded_labels"}) {
+    nlohmann::json config = nlohmann::json::parse(DefaultJson());
+    config.erase(name);
+    EXPECT_THAT(std::string(ParseConfig(config.dump()).status().message()), HasSubstr(name));
+  }
+}
+
+TEST(TrainingOptionsTest, InvalidSettingsAreRejectedByName) {
+  const auto refusal = [](const std::string& path, const std::string& value) {
+    return std::string(ParseConfig(DefaultJson(), {{path, value}}).status().message());
+  };
+  EXPECT_EQ(refusal("losses.bone", "-1"), "losses.bone: expected a number from 0 to 1e+06, got -1");
+  EXPECT_EQ(refusal("optimiser.average_decay", "1"),
+            "optimiser.average_decay: expected a number from 0 to 0.999999, got 1");
+  EXPECT_EQ(refusal("start.root", "1.5"), "start.root: expected a number from 0 to 1, got 1.5");
+  EXPECT_EQ(refusal("epochs", "0"), "epochs: expected a whole number from 1 to 1000000, got 0");
+  EXPECT_EQ(refusal("seed", "-1"),
+            "seed: expected a whole number from 0 to 9223372036854775807, got -1");
+  EXPECT_EQ(refusal("optimiser.name", "sgd"),
+            "optimiser.name: expected one of adam, rmsprop, got \"sgd\"");
+  EXPECT_EQ(refusal("discriminator.binary", "1"),
+            "discriminator.binary: expected true or false, got 1");
+  EXPECT_EQ(refusal("losses.none", "1"), "losses: unknown field \"none\"");
+  EXPECT_EQ(refusal("flow.passes", "1"), "unknown field \"flow\"");
+  EXPECT_EQ(refusal("epochs.more", "1"), "epochs.more: no such setting");
+  EXPECT_EQ(refusal("optimiser.last_share", "0"), "optimiser: unknown field \"last_share\"");
+  EXPECT_EQ(refusal("augmentation", "1"), "augmentation: expected an object, got 1");
 }
 
 TEST(TrainingOptionsTest, DerivedConfigurationChangesItsBase) {
@@ -109,16 +144,16 @@ TEST(TrainingOptionsTest, DerivedConfigurationIsCheckedByName) {
               HasSubstr("base: expected a named configuration, got \"nothing\""));
   EXPECT_THAT(refusal(R"({"base": "default"})"), HasSubstr("set"));
   EXPECT_THAT(refusal(R"({"base": "default", "set": {"losses.none": 1}})"),
-              HasSubstr("losses.none: no such setting"));
+              HasSubstr("losses: unknown field \"none\""));
   EXPECT_THAT(refusal(R"({"base": "default", "set": {}, "more": 1})"), HasSubstr("more"));
 }
 
 TEST(TrainingOptionsTest, HeldOutSubjectsMustExist) {
   const dataset::Dataset dataset = MadeUpDataset();
   TrainingOptions options;
-  options.validation.subjects = {"s02"};
+  options.common.mutable_validation()->add_subjects("s02");
   EXPECT_THAT(CheckAgainst(options, dataset), IsOk());
-  options.validation.subjects = {"s09"};
+  options.common.mutable_validation()->set_subjects(0, "s09");
   EXPECT_THAT(
       CheckAgainst(options, dataset),
       StatusIs(
@@ -133,7 +168,7 @@ TEST(TrainingOptionsTest, MirroringRequiresLeftAndRightInJointNames) {
   }
   TrainingOptions options;
   EXPECT_THAT(CheckAgainst(options, dataset), IsOk());
-  options.augmentation.mirror = 0.5;
+  options.common.mutable_augmentation()->set_mirror(0.5);
   EXPECT_THAT(CheckAgainst(options, dataset),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("says left or right")));
   dataset.skeleton.joint_names[5] = "LeftWrist";

@@ -68,7 +68,7 @@ TEST_F(PaperTrainerTest, StateOfAnotherRunIsRejected) {
   PaperTrainer trainer = Make();
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
   const std::string bone = Describe(options_).at("losses.bone");
-  PaperOf(&options_).losses.bone = 0.5;
+  options_.paper.mutable_losses()->set_bone(0.5);
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
               StatusIs(absl::StatusCode::kFailedPrecondition,
                        HasSubstr(absl::StrCat("other options or data: expected losses.bone=", bone,
@@ -87,13 +87,12 @@ TEST_F(PaperTrainerTest, TornOrMissingStateIsAnError) {
 }
 
 TEST_F(PaperTrainerTest, OverfitsOneClip) {
-  PaperOf(&options_).dropout = {0, 0};
-  options_.augmentation = {};
-  PaperOf(&options_).graded_labels = 0;
-  PaperOf(&options_).losses = {};
-  PaperOf(&options_).architecture.encoder_hidden = 12;
-  options_.optimiser.learning_rate = 0.01;
-  options_.epochs = 300;
+  options_.paper.clear_dropout();
+  options_.common.clear_augmentation();
+  options_.paper.set_graded_labels(0);
+  options_.paper.clear_losses();
+  PaperOf(&options_).encoder_hidden = 12;
+  Change("optimiser { learning_rate: 0.01 } epochs: 300", &options_.common);
   manifest_ = ManifestFor(options_, dataset_);
   PaperTrainer trainer(options_, manifest_, dataset_, {2}, {});
   const double before = trainer.RunEpoch().reconstruction;
@@ -103,14 +102,14 @@ TEST_F(PaperTrainerTest, OverfitsOneClip) {
 }
 
 TEST_F(PaperTrainerTest, EpochUsesEverySequenceOnce) {
-  options_.augmentation = {};
+  options_.common.clear_augmentation();
   std::multiset<float> seen;
   for (const TrainingBatch& batch :
        SampleEpoch(manifest_, dataset_, AllOf(dataset_), options_, 3)) {
     for (int64_t n = 0; n < batch.classes.size(0); ++n) {
       seen.insert(batch.input.lengths[n].item<float>());
     }
-    EXPECT_LE(batch.classes.size(0), options_.batch);
+    EXPECT_LE(batch.classes.size(0), options_.common.batch());
   }
   std::multiset<float> wanted;
   for (const dataset::Sequence& s : dataset_.sequences) {
@@ -137,20 +136,18 @@ TEST_F(PaperTrainerTest, BatchIsInTheLeadersFrameWithItsLabelAndStart) {
 }
 
 TEST(ScheduleTest, OneCycleRisesAndFalls) {
-  TrainingOptions::Optimiser options;
+  CommonSettings::Optimiser options;
   EXPECT_NEAR(ScheduleFactor(options, 0, 100), 0.04, 1e-9);
   EXPECT_NEAR(ScheduleFactor(options, 20, 100), 1, 1e-9);
   EXPECT_NEAR(ScheduleFactor(options, 60, 100), 0.5, 1e-3);
   EXPECT_LT(ScheduleFactor(options, 99, 100), 0.01);
-  options.schedule = "constant";
+  options.set_schedule(CONSTANT);
   EXPECT_EQ(ScheduleFactor(options, 99, 100), 1);
 }
 
 TEST(ScheduleTest, CosineWarmsUpAndFallsToItsLastShare) {
-  TrainingOptions::Optimiser options;
-  options.schedule = "cosine";
-  options.warm_up_steps = 10;
-  options.last_share = 0.1;
+  const auto options =
+      Settings<CommonSettings::Optimiser>("schedule: COSINE warm_up_steps: 10 last_share: 0.1");
   EXPECT_NEAR(ScheduleFactor(options, 0, 1000), 0.1, 1e-3);
   EXPECT_NEAR(ScheduleFactor(options, 9, 1000), 1, 1e-3);
   EXPECT_NEAR(ScheduleFactor(options, 500, 1000), 0.55, 1e-3);
@@ -162,7 +159,7 @@ class AdversaryTest : public ::testing::Test {
   AdversaryTest() {
     torch::set_num_threads(1);
     torch::manual_seed(3);
-    PaperOf(&options_).graded_labels = 0;
+    options_.paper.set_graded_labels(0);
     batch_ = SampleEpoch(manifest_, dataset_, AllOf(dataset_), options_, 0).front();
     synthesised_ = torch::randn_like(batch_.follower);
   }
@@ -189,7 +186,7 @@ TEST_F(AdversaryTest, GeneratorLossGivesNoGradientToTheDiscriminators) {
 TEST_F(AdversaryTest, BinaryDiscriminatorAddsItsLoss) {
   torch::manual_seed(4);
   Adversary alone = Make();
-  PaperOf(&options_).discriminator.binary = true;
+  options_.paper.mutable_discriminator()->set_binary(true);
   torch::manual_seed(4);  // the same class-aware discriminator
   Adversary both = Make();
   EXPECT_EQ(both.Tensors().size(), 2 * alone.Tensors().size());

@@ -44,10 +44,9 @@ class RunTest : public ::testing::Test {
   }
 
   // Trains the sampling generator for one epoch.
-  FlowTraining& UseFlow() {
+  void UseFlow() {
     plan_.options = SmallFlowOptions();
-    plan_.options.epochs = 1;
-    return FlowOf(&plan_.options);
+    plan_.options.common.set_epochs(1);
   }
 
   dataset::Dataset dataset_ = MadeUpDataset();
@@ -73,8 +72,9 @@ TEST_F(RunTest, WritesACheckpointThatAnswers) {
 }
 
 TEST_F(RunTest, LongTakesAreTrainedOnInWindows) {
-  UseFlow().window_seconds = 0.4;  // 6 frames
-  FlowOf(&plan_.options).stride_seconds = FlowOf(&plan_.options).lookahead_seconds = 0.2;
+  UseFlow();
+  Change("flow { window_seconds: 0.4 stride_seconds: 0.2 lookahead_seconds: 0.2 }",  // 6, 3 frames
+         &plan_.options.flow);
   for (dataset::Sequence& take : dataset_.sequences) {
     take.labels = {{take.interaction_class, 0, 6}, {2, 4, take.pair.leader.frame_count()}};
   }
@@ -89,7 +89,7 @@ TEST_F(RunTest, TrainsACriticAfterTheGenerator) {
   UseFlow();
   const checkpoint::Checkpoint plain = Train();
   EXPECT_TRUE(plain.critic.empty());
-  FlowOf(&plan_.options).critic = {60, 2};
+  Change("critic { steps: 60 answers: 2 }", &plan_.options.flow);
   plan_.folder = folder_.path() / "with";
   ASSERT_THAT(Go(), IsOk());
   EXPECT_THAT(progress_.str(), HasSubstr("all: critic: loss "));
@@ -104,15 +104,15 @@ TEST_F(RunTest, TrainsACriticAfterTheGenerator) {
 
 TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
   for (const TrainingOptions& options : {SmallOptions(), SmallFlowOptions()}) {
-    SCOPED_TRACE(std::holds_alternative<FlowTraining>(options.method));
+    SCOPED_TRACE(options.architecture.index());
     plan_.options = options;
-    plan_.options.epochs = 1;
+    plan_.options.common.set_epochs(1);
     plan_.from.clear();
-    plan_.folder = folder_.path() / absl::StrCat("first", options.method.index());
+    plan_.folder = folder_.path() / absl::StrCat("first", options.architecture.index());
     ASSERT_THAT(Go(), IsOk());
     plan_.from = CheckpointFolder(plan_);
-    plan_.folder = folder_.path() / absl::StrCat("second", options.method.index());
-    plan_.options.optimiser.learning_rate = 1e-9;  // keeps the weights
+    plan_.folder = folder_.path() / absl::StrCat("second", options.architecture.index());
+    plan_.options.common.mutable_optimiser()->set_learning_rate(1e-9);  // keeps the weights
     ASSERT_THAT(Go(), IsOk());
     const auto first = checkpoint::ReadCheckpoint(plan_.from);
     const auto second = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
@@ -129,7 +129,7 @@ TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
 }
 
 TEST_F(RunTest, RejectsTheCheckpointOfAnotherModel) {
-  plan_.options.epochs = 1;
+  plan_.options.common.set_epochs(1);
   ASSERT_THAT(Go(), IsOk());
   plan_.from = CheckpointFolder(plan_);
   plan_.folder = folder_.path() / "other";
@@ -177,7 +177,7 @@ TEST_F(RunTest, DivergenceIsReportedNotSaved) {
 }
 
 TEST_F(RunTest, ValidatesOnHeldOutSubjects) {
-  plan_.options.validation.subjects = {"s02"};
+  Change("validation { subjects: 's02' }", &plan_.options.common);
   const checkpoint::Checkpoint checkpoint = Train();
   const auto& metrics = checkpoint.manifest.metrics;
   EXPECT_GT(metrics.at("validation.afd"), 0);
@@ -187,13 +187,13 @@ TEST_F(RunTest, ValidatesOnHeldOutSubjects) {
                                    "back, %.4f m\n",
                                    metrics.at("validation.epoch"), metrics.at("validation.afd"))));
   plan_.folder = folder_.path() / "nothing_left";
-  plan_.options.validation.subjects = {"s01", "s02"};
+  Change("validation { subjects: [ 's01', 's02' ] }", &plan_.options.common);
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("every sequence")));
 }
 
 TEST_F(RunTest, TellsItsLengthAndWhyTheLossJumps) {
   plan_.options = SmallFlowOptions();  // 4 epochs of 2 passes of 3 steps
-  FlowOf(&plan_.options).energy.from = 0.5;
+  plan_.options.flow.mutable_energy()->set_from(0.5);
   ASSERT_THAT(Go(), IsOk());
   EXPECT_THAT(progress_.str(), HasSubstr("all: 7 sequences, 24 steps\n"));
   EXPECT_THAT(progress_.str(), HasSubstr("left\nall: from epoch 3 the loss is the score of whole "

@@ -41,13 +41,11 @@ dataset::Sequence Reaction() {
   return sequence;
 }
 
-FlowTraining::Stillness Only(double FlowTraining::Stillness::*share) {
-  FlowTraining::Stillness options;
-  options.*share = 1;
-  return options;
+FlowSettings::Stillness Only(const std::string& share) {
+  return Settings<FlowSettings::Stillness>(share + ": 1");
 }
 
-StillClip Draw(const FlowTraining::Stillness& options, uint64_t seed) {
+StillClip Draw(const FlowSettings::Stillness& options, uint64_t seed) {
   base::Random random(seed);
   return AddStillness(motion::SbuSkeleton(), options, kRate, kMost, &random, Reaction());
 }
@@ -80,9 +78,8 @@ double Distance(const StillClip& clip, int frame) {
 
 TEST(StillnessTest, ClipsAreAtMostAsLongAsAWindowAndBonesKeepTheirLengths) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  FlowTraining::Stillness options;
-  options.pauses = 1;
-  options.ends = options.motionless = options.unlabelled = 0.25;
+  const auto options =
+      Settings<FlowSettings::Stillness>("pauses: 1 ends: 0.25 motionless: 0.25 unlabelled: 0.25");
   const dataset::Sequence captured = Reaction();
   const std::vector<float> lengths = MedianBoneLengths(skeleton, captured.pair.follower.poses);
   for (uint64_t seed = 0; seed < 100; ++seed) {
@@ -106,7 +103,7 @@ TEST(StillnessTest, PausesSurroundTheWholeReaction) {
   const dataset::Sequence captured = Reaction();
   int before = 0, after = 0, whole = 0;
   for (uint64_t seed = 0; seed < 100; ++seed) {
-    const StillClip clip = Draw(Only(&FlowTraining::Stillness::pauses), seed);
+    const StillClip clip = Draw(Only("pauses"), seed);
     EXPECT_FALSE(clip.amid);
     EXPECT_FALSE(clip.unlabelled);
     const Poses& follower = clip.sequence.pair.follower.poses;
@@ -129,7 +126,7 @@ TEST(StillnessTest, PausesSurroundTheWholeReaction) {
 TEST(StillnessTest, BesideALeaderWhoDoesNotMoveTheFollowerStands) {
   int midst = 0;
   for (uint64_t seed = 0; seed < 60; ++seed) {
-    const StillClip clip = Draw(Only(&FlowTraining::Stillness::motionless), seed);
+    const StillClip clip = Draw(Only("motionless"), seed);
     const motion::ClipPair& pair = clip.sequence.pair;
     EXPECT_FALSE(clip.unlabelled);
     EXPECT_LT(FastestJoint(pair.leader.poses), 0.15);
@@ -151,7 +148,7 @@ TEST(StillnessTest, AFollowerInTheMidstGoesToRestInOneStepOfEachFoot) {
   const motion::JointPair feet = *motion::SbuSkeleton().feet;
   int returned = 0;
   for (uint64_t seed = 0; seed < 300; ++seed) {
-    const StillClip clip = Draw(Only(&FlowTraining::Stillness::motionless), seed);
+    const StillClip clip = Draw(Only("motionless"), seed);
     const Poses& follower = clip.sequence.pair.follower.poses;
     const int last = follower.frame_count() - 1;
     if (!clip.amid || Distance(clip, 0) < 1.3 || last < 38) continue;
@@ -172,7 +169,7 @@ TEST(StillnessTest, WithoutALabelTheFollowerRestsWhateverTheLeaderDoes) {
   const int hand = body::FindBody(motion::SbuSkeleton()).arms.front().end;
   int acting = 0, resting = 0;
   for (uint64_t seed = 0; seed < 60; ++seed) {
-    const StillClip clip = Draw(Only(&FlowTraining::Stillness::unlabelled), seed);
+    const StillClip clip = Draw(Only("unlabelled"), seed);
     EXPECT_TRUE(clip.unlabelled);
     if (clip.amid) continue;
     const motion::ClipPair& pair = clip.sequence.pair;
@@ -190,7 +187,7 @@ TEST(StillnessTest, WithoutALabelTheFollowerRestsWhateverTheLeaderDoes) {
 
 TEST(StillnessTest, AnEndBeginsInTheReactionAndRests) {
   for (uint64_t seed = 0; seed < 40; ++seed) {
-    const StillClip clip = Draw(Only(&FlowTraining::Stillness::ends), seed);
+    const StillClip clip = Draw(Only("ends"), seed);
     EXPECT_TRUE(clip.amid);
     const Poses& follower = clip.sequence.pair.follower.poses;
     EXPECT_GE(FrameOf(Reaction().pair.follower.poses, follower, 0), kCaptured / 2) << seed;
@@ -202,14 +199,14 @@ TEST(StillnessTest, AnEndBeginsInTheReactionAndRests) {
 TEST(StillnessTest, SkeletonAndOptionsMustFit) {
   dataset::Dataset dataset = MadeUpDataset();
   TrainingOptions options = SmallFlowOptions();
-  FlowOf(&options).stillness.motionless = 0.2;
+  options.flow.mutable_stillness()->set_motionless(0.2);
   EXPECT_THAT(CheckStillness(options, dataset), IsOk());
-  FlowOf(&options).architecture.frame_labels = true;
+  FlowOf(&options).frame_labels = true;
   EXPECT_THAT(std::string(CheckStillness(options, dataset).message()), HasSubstr("frame_labels"));
-  FlowOf(&options).architecture.frame_labels = false;
+  FlowOf(&options).frame_labels = false;
   dataset.skeleton.hips.reset();
   EXPECT_THAT(std::string(CheckStillness(options, dataset).message()), HasSubstr("with hips"));
-  FlowOf(&options).stillness.motionless = 0;
+  options.flow.mutable_stillness()->set_motionless(0);
   EXPECT_THAT(CheckStillness(options, dataset), IsOk());
 }
 

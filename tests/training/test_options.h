@@ -1,6 +1,10 @@
 #ifndef DUET_TESTS_TRAINING_TEST_OPTIONS_H_
 #define DUET_TESTS_TRAINING_TEST_OPTIONS_H_
 
+#include <google/protobuf/text_format.h>
+#include <gtest/gtest.h>
+
+#include <string>
 #include <variant>
 
 #include "model/checkpoint/manifest.h"
@@ -9,45 +13,49 @@
 
 namespace duet::training {
 
-// Require options of the architecture.
-inline PaperTraining& PaperOf(TrainingOptions* options) {
-  return std::get<PaperTraining>(options->method);
+// Changes the settings that a text names: Change("own { share: 1 }", &options.flow).
+inline void Change(const std::string& text, google::protobuf::Message* settings) {
+  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(text, settings)) << text;
 }
-inline FlowTraining& FlowOf(TrainingOptions* options) {
-  return std::get<FlowTraining>(options->method);
+template <typename Message>
+Message Settings(const std::string& text) {
+  Message settings;
+  Change(text, &settings);
+  return settings;
+}
+
+// Require options of the architecture.
+inline checkpoint::PaperArchitecture& PaperOf(TrainingOptions* options) {
+  return std::get<checkpoint::PaperArchitecture>(options->architecture);
+}
+inline checkpoint::FlowArchitecture& FlowOf(TrainingOptions* options) {
+  return std::get<checkpoint::FlowArchitecture>(options->architecture);
 }
 
 // A network and a run small enough for a test, with every loss and every augmentation on.
 inline TrainingOptions SmallOptions() {
   TrainingOptions options;
-  PaperOf(&options).discriminator.learning_rate = 1e-3;
-  PaperOf(&options).architecture.follower_start = true;
-  PaperOf(&options).architecture.base_pose = true;
-  PaperOf(&options).architecture.slice_features = 4;
-  PaperOf(&options).architecture.encoder_hidden = 4;
-  PaperOf(&options).architecture.attention = 8;
-  PaperOf(&options).dropout = {0.1, 0.1};
-  options.optimiser.weight_decay = 0.01;
-  options.optimiser.gradient_clip = 1;
-  options.optimiser.average_decay = 0.5;
-  options.epochs = 4;
-  options.batch = 3;
-  options.seed = 5;
-  PaperOf(&options).losses.bone = 0.01;
-  PaperOf(&options).losses.continuity = 0.1;
-  PaperOf(&options).losses.adversarial = 0.1;
-  PaperOf(&options).discriminator.hidden = 4;
-  options.augmentation.mirror = 0.5;
-  options.augmentation.swap_roles = 0.5;
-  options.augmentation.body_scale = 0.05;
-  options.augmentation.time_warp = 0.1;
-  options.augmentation.yaw = 0.1;
-  options.augmentation.leader_yaw = 0.1;
-  options.augmentation.noise = 0.01;
-  options.augmentation.crop = 0.5;
-  options.augmentation.body_noise = 0.01;
-  PaperOf(&options).graded_labels = 0.5;
-  options.start = {0.3, 0.3};
+  checkpoint::PaperArchitecture& architecture = PaperOf(&options);
+  architecture.follower_start = true;
+  architecture.base_pose = true;
+  architecture.slice_features = 4;
+  architecture.encoder_hidden = 4;
+  architecture.attention = 8;
+  options.paper = Settings<PaperSettings>(R"(
+      dropout { slices: 0.1 encoded: 0.1 }
+      losses { bone: 0.01 continuity: 0.1 adversarial: 0.1 }
+      discriminator { hidden: 4 learning_rate: 1e-3 }
+      graded_labels: 0.5)");
+  options.common = Settings<CommonSettings>(R"(
+      optimiser { weight_decay: 0.01 gradient_clip: 1 average_decay: 0.5 }
+      epochs: 4
+      batch: 3
+      seed: 5
+      augmentation {
+        mirror: 0.5 swap_roles: 0.5 body_scale: 0.05 time_warp: 0.1 yaw: 0.1 leader_yaw: 0.1
+        noise: 0.01 body_noise: 0.01 crop: 0.5
+      }
+      start { root: 0.3 pose: 0.3 })");
   return options;
 }
 
@@ -60,7 +68,7 @@ inline checkpoint::Manifest ManifestFor(const TrainingOptions& options,
   manifest.model.classes = dataset.classes;
   manifest.model.frame_rate_hz = dataset.frame_rate_hz;
   manifest.model.window_frames = dataset.LongestFrameCount();
-  SetArchitecture(ArchitectureOf(options), &manifest);
+  SetArchitecture(options.architecture, &manifest);
   manifest.parts = dataset.parts;
   manifest.standardisation = options.standardisation;
   return manifest;

@@ -237,17 +237,17 @@ class MakeEverydayTest(unittest.TestCase):
 
 class ConfigurationsTest(unittest.TestCase):
     def test_change_settings_that_the_trainer_has(self):
-        named = Path(__file__).resolve().parents[3] / "model/training/configs"
+        training = Path(__file__).resolve().parents[3] / "model/training"
+        declared = ((training / "settings.proto").read_text(encoding="utf-8") +
+                    (training / "configs/flow.json").read_text(encoding="utf-8"))
         files = sorted((Path(__file__).resolve().parents[1] / "configs").glob("*.json"))
         self.assertEqual([file.stem for file in files], ["first", "second", "third"])
         for file in files:
             changed = json.loads(file.read_text(encoding="utf-8"))
-            self.assertTrue((named / f"{changed['base']}.json").exists())
+            self.assertTrue((training / f"configs/{changed['base']}.json").exists())
             for path in changed["set"]:
-                settings = json.loads((named / "flow.json").read_text(encoding="utf-8"))
                 for key in path.split("."):
-                    self.assertIn(key, settings, f"{file.name}: {path}")
-                    settings = settings[key]
+                    self.assertRegex(declared, rf' {key} = |"{key}":', f"{file.name}: {path}")
 
 
 if __name__ == "__main__":

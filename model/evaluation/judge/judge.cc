@@ -126,10 +126,10 @@ std::vector<MotionBatch> Batches(const dataset::Dataset& dataset,
 constexpr int64_t kTrainingBatch = 16;
 constexpr double kLearningRate = 2e-3, kWeightDecay = 0.01, kDropout = 0.3, kLabelSmoothing = 0.1;
 
-training::TrainingOptions::Augmentation Variations() {
-  training::TrainingOptions::Augmentation augmentation;
-  augmentation.body_scale = 0.1;
-  augmentation.crop = 0.3;
+training::CommonSettings::Augmentation Variations() {
+  training::CommonSettings::Augmentation augmentation;
+  augmentation.set_body_scale(0.1);
+  augmentation.set_crop(0.3);
   return augmentation;
 }
 
@@ -174,10 +174,10 @@ network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
   network->set_dropout(kDropout);
   const int64_t count = static_cast<int64_t>(sequences.size());
   const int64_t steps = options.epochs * ((count + kTrainingBatch - 1) / kTrainingBatch);
-  training::TrainingOptions::Optimiser settings;
-  settings.learning_rate = kLearningRate;
-  settings.weight_decay = kWeightDecay;
-  settings.gradient_clip = 1;
+  training::CommonSettings::Optimiser settings;
+  settings.set_learning_rate(kLearningRate);
+  settings.set_weight_decay(kWeightDecay);
+  settings.set_gradient_clip(1);
   training::Optimiser optimiser(settings, network->parameters(), steps);
   const auto smoothed =
       torch::nn::functional::CrossEntropyFuncOptions().label_smoothing(kLabelSmoothing);

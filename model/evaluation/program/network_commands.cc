@@ -189,12 +189,12 @@ absl::StatusOr<report::Section> RunSweep(const ExperimentFlags& flags) {
 constexpr double kLeastOwn = 0.75, kMostOwn = 1.25, kMostOwnMixed = 1;
 constexpr double kLeastOther = 0.1, kMostOther = 0.35;
 
-training::TrainingOptions::Augmentation Variations() {
-  training::TrainingOptions::Augmentation augmentation;
-  augmentation.swap_roles = 0.5;
-  augmentation.body_scale = 0.08;
-  augmentation.time_warp = 0.1;
-  augmentation.leader_yaw = 0.1;
+training::CommonSettings::Augmentation Variations() {
+  training::CommonSettings::Augmentation augmentation;
+  augmentation.set_swap_roles(0.5);
+  augmentation.set_body_scale(0.08);
+  augmentation.set_time_warp(0.1);
+  augmentation.set_leader_yaw(0.1);
   return augmentation;
 }
 
