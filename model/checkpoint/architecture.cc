@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
-#include "model/checkpoint/architecture_json.h"
 #include "model/checkpoint/checkpoint.h"
+#include "model/checkpoint/json_fields.h"
 #include "model/checkpoint/manifest.h"
 
 namespace duet::checkpoint {
@@ -27,6 +27,10 @@ int WholeBodyInput(const Manifest& manifest, const PaperArchitecture& paper) {
   if (paper.follower_start) input += StartFeatureCount(skeleton);
   return input;
 }
+
+constexpr Named<GeneratorVariant> kVariantNames[] = {{"paper", GeneratorVariant::kPaper},
+                                                     {"released", GeneratorVariant::kReleased},
+                                                     {"unlabelled", GeneratorVariant::kUnlabelled}};
 
 void Declare(Fields* fields, PaperArchitecture* paper) {
   fields->Choice("variant", kVariantNames, &paper->variant);

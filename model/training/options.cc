@@ -18,7 +18,7 @@
 #include "model/base/status_macros.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
-#include "model/checkpoint/architecture_json.h"
+#include "model/checkpoint/json_fields.h"
 #include "model/retargeting/anatomy.h"
 #include "model/training/named_configs.inc"
 

@@ -562,7 +562,7 @@ TEST(DirectionManifest, RejectsByName) {
        {"/partner_direction/correction/classes", "[]",
         "partner_direction.correction.classes: expected one object for each of the"},
        {"/partner_direction/correction/classes/1", "3",
-        "partner_direction.correction.classes: expected objects, got 3"},
+        "partner_direction.correction.classes[1]: expected an object, got 3"},
        {"/partner_direction/correction/classes/1/sine/2", "\"x\"",
         "partner_direction.correction.classes[1].sine[2]: expected a number"},
        {"/partner_direction/correction/classes/1/tangent", "1",
