@@ -55,18 +55,12 @@ async function react(count) {
   const [asked, begun] = [askedFor(), performance.now()];
   const seed = firstSeed(count);
   tell('Waiting for the server …');
-  if (count > 1) awaitGallery(count);
   try {
     const show = count === 1 ? (first, positions) => theatre.takeFrames(first, positions) : null;
-    const answered = async (index, one) => {
-      const take = await ask(leader, one, call.signal, show);
-      if (!call.signal.aborted && count > 1) arriveInGallery(index);
-      return take;
-    };
     // The other seeds follow the first, which only its answer names if the server chooses it.
-    const first = answered(0, seed);
+    const first = ask(leader, seed, call.signal, show);
     const start = seed === '' && count > 1 ? (await first).seed : seed;
-    const others = Array.from({length: count - 1}, (_, i) => answered(i + 1, start + i + 1));
+    const others = Array.from({length: count - 1}, (_, i) => ask(leader, start + i + 1, call.signal, show));
     const takes = await Promise.all([first, ...others]);
     if (call.signal.aborted) return;
     state.call = null;
@@ -99,9 +93,7 @@ async function finish(seconds) {
   const missed = takes[chosen].pins.filter(({metres}) => metres >= 0.01).length;
   const pins = missed > 0 ? ` ${missed} of ${takes[chosen].pins.length} pins missed.` : '';
   tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(takes)}.${pins}${far}`);
-  if (takes.length > 1 && isNarrow()) {
-    element('gallery').scrollIntoView({block: 'nearest'});
-  }
+  if (takes.length > 1) element('gallery').scrollIntoView({block: 'nearest'});
   state.answers += 1;
   root.dataset.answers = state.answers;
   await keepNow();

@@ -19,6 +19,13 @@ function skeletonOf(model) {
   return model.joint_names.map((name, i) => `${encodeURIComponent(name)}:${parents.get(i) ?? ''}`).join();
 }
 
+// The bytes of a sample's file.
+async function fetchSample(name) {
+  const response = await fetchFrom(`/samples/${name}.bvh`);
+  if (!response.ok) throw new CallError(await messageIn(response));
+  return response.arrayBuffer();
+}
+
 // Reads the leader of a file in the joints of a model: {notes, motion}. `query`: settings for reading it.
 async function readMotion(name, bytes, model, query = []) {
   const parts = new URLSearchParams([['name', safeName(name)], ...query]);

@@ -2,17 +2,14 @@
 // One call over gRPC-web: sends one frame; receives frames with messages and a last one with
 // trailers.
 
-// A failed call: the server's message, and one problem for each invalid field. `isAway`: the gateway
-// or the server cannot be reached, so the same call may succeed later.
+// A failed call: the server's message, and one problem for each invalid field.
 class CallError extends Error {
-  constructor(message, problems = [], isAway = false) {
+  constructor(message, problems = []) {
     super(message);
     this.problems = problems;
-    this.isAway = isAway;
   }
 }
 
-const UNAVAILABLE = '14';
 const AWAY_SECONDS = 2;  // between two questions to a server that is away
 
 // As fetch. A browser's own error does not name the program that is missing.
@@ -22,7 +19,7 @@ async function fetchFrom(path, options) {
   } catch (error) {
     if (error.name === 'AbortError') throw error;
     throw new CallError(`The gateway at ${location.host} does not answer. Start it with ` +
-                        'contrib/studio/gateway.py.', [], true);
+                        'contrib/studio/gateway.py.');
   }
 }
 
@@ -119,8 +116,7 @@ async function* callServer(method, request, message, answer, signal) {
     const trailers = readTrailers(next.data);
     if (trailers['grpc-status'] === '0') return;
     throw new CallError(decodeURIComponent(trailers['grpc-message'] || 'The call failed.'),
-                        problemsIn(trailers['grpc-status-details-bin']),
-                        trailers['grpc-status'] === UNAVAILABLE);
+                        problemsIn(trailers['grpc-status-details-bin']));
   }
   throw new CallError('The reply broke off. Press React again.');
 }

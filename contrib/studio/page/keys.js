@@ -25,7 +25,7 @@ function usesKey(item, key) {
   if (item.matches('select, textarea, input:not([type=range]):not([type=file])')) return true;
   if (key === ' ') return item.matches('button, summary, a, input, [role=button]');
   const moves = ['ArrowLeft', 'ArrowRight', 'Home', 'End'].includes(key);
-  return moves && item.matches('input[type=range], [role=radio]');
+  return moves && item.matches('input[type=range]');
 }
 
 function connectKeys() {

@@ -9,10 +9,7 @@ const MAX_MOVES = 9;         // keys 1 to 9
 
 // A sample in a model's joints, {frameRate, frames}: each frame a Float32Array [joints, 3].
 async function sampleOf(name, model) {
-  const file = `${name}.bvh`;
-  const response = await fetchFrom(`/samples/${file}`);
-  if (!response.ok) throw new CallError(await messageIn(response));
-  const {motion} = await readMotion(file, await response.arrayBuffer(), model);
+  const {motion} = await readMotion(`${name}.bvh`, await fetchSample(name), model);
   const values = motion.joint_names.length * 3;
   return {frameRate: motion.frame_rate_hz, frames: Array.from(
       {length: motion.frames}, (_, i) => motion.positions.slice(i * values, (i + 1) * values))};

@@ -14,7 +14,6 @@ const state = {
   asked: '',       // askedFor() of the takes
   rig: null,       // {name, bytes} of the rig's file; null: the leader's own
   call: null,      // the AbortController of the running calls
-  isAway: false,   // the page waits for the server
   answers: 0,
 };
 
@@ -30,18 +29,6 @@ function tell(text, failed = false, problems = []) {
 function tellError(error) {
   const problems = error.problems ?? [];
   tell(problems.length ? 'The server rejected the request:' : error.message, true, problems);
-  if (error.isAway) tellReturn(error.message);
-}
-
-// Tells when the server is back, unless the page tells something else by then.
-async function tellReturn(message) {
-  if (state.isAway) return;
-  state.isAway = true;
-  const isTold = () => root.dataset.failed === 'true' && element('status').textContent === message;
-  await pause(AWAY_SECONDS);
-  await awaitServer((error) => { if (isTold()) tell(message = error.message, true); });
-  state.isAway = false;
-  if (isTold()) tell('The server is back. Try again.');
 }
 
 function addButton(parent, text, act) {
@@ -61,11 +48,6 @@ const attempt = (act) => async (...all) => {
   }
 };
 
-// Whether the settings are below the scene, as in the style sheets.
-const isNarrow = () => matchMedia(
-    '(max-width: 480px), (max-width: 760px) and (orientation: portrait)').matches;
-
-const nameOf = (model) => `${model.name}@${model.version}`;
 const modelNamed = (name) => state.models.find((model) => nameOf(model) === name);
 const seedsOf = (takes) => takes.map((take) => take.seed);
 
@@ -258,13 +240,6 @@ function connectSettings() {
     settings.variety = variety;
     changed('variety');
   });
-  element('share').addEventListener('click', attempt(async () => {
-    if (!navigator.clipboard) {
-      throw new Error('The browser does not allow copying. Copy the address of this page.');
-    }
-    await navigator.clipboard.writeText(location.href);
-    tell('The link is copied. It contains the settings and the file\'s name, but not the file.');
-  }));
 }
 
 // Shows the chosen model. A leader is read again if the model has other joints.
@@ -300,29 +275,17 @@ function classOfSample(name, model) {
   return classes.includes(name) ? name : model.name === name ? classes[0] : null;
 }
 
-// Whether the visitor has set no label: there is none, or the sample that is shown has set it.
-function areLabelsOfSample() {
-  const {labels, leader} = settings;
-  const shown = stemOf(leader);
-  const own = state.samples.includes(shown) ? classOfSample(shown, state.model) : null;
-  const set = state.model.interaction_classes.filter((name) => (labels[name] ?? 0) !== 0);
-  return set.length === 0 || (set.length === 1 && set[0] === own && labels[own] === 1);
-}
-
 async function takeSample(name) {
-  const response = await fetchFrom(`/samples/${name}.bvh`);
-  if (!response.ok) throw new CallError(await messageIn(response));
+  const bytes = await fetchSample(name);
   const model = modelOfSample(name);
   const own = classOfSample(name, model);
-  const isOpen = areLabelsOfSample();
   if (model !== state.model) {
     settings.model = nameOf(model);
     showFields();
     showModel();
   }
-  if (own && isOpen) settings.labels = {[own]: 1};
-  else if (own && !isAnyWeight()) settings.labels = {...settings.labels, [own]: 1};
-  await takeLeader(`${name}.bvh`, await response.arrayBuffer());
+  if (own) settings.labels = {[own]: 1};
+  await takeLeader(`${name}.bvh`, bytes);
 }
 
 // Restores the leader and the answers of the address, from the browser or from the samples.
@@ -343,7 +306,7 @@ async function restore() {
     return;
   }
   if (state.samples.includes(stemOf(name))) {
-    await takeSample(stemOf(name));
+    await takeLeader(name, await fetchSample(stemOf(name)));
     return;
   }
   state.awaited = name;
@@ -399,7 +362,6 @@ async function start() {
   connectFiles();
   connectSettings();
   connectAsking();
-  connectGallery();
   connectTimeline();
   connectStart();
   connectPins();

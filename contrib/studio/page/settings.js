@@ -72,18 +72,7 @@ function readNumber(text, least, most, otherwise) {
 // Replaces all settings by those of an address.
 function takeAddress(hash) {
   Object.assign(settings, structuredClone(DEFAULTS));
-  for (const part of hash.replace(/^#/, '').split('&')) {
-    const equals = part.indexOf('=');
-    if (equals < 0) continue;
-    const name = part.slice(0, equals);
-    let text;
-    try {
-      text = decodeURIComponent(part.slice(equals + 1));
-    } catch {
-      continue;  // a truncated link
-    }
-    takeSetting(name, text);
-  }
+  for (const [name, text] of new URLSearchParams(hash.replace(/^#/, ''))) takeSetting(name, text);
 }
 
 // The settings of an address. Those of the page do not change.
@@ -152,6 +141,8 @@ function pointOf(name, text) {
 
 const messageOf = (weights) => ({weights: Object.entries(weights).map(
     ([interaction_class, weight]) => ({interaction_class, weight}))});
+
+const nameOf = (model) => `${model.name}@${model.version}`;
 
 function selectorOf(model) {
   const [name, version] = model.split('@');

@@ -55,8 +55,6 @@ const attempt = (act) => async (...all) => {
   }
 };
 
-const nameOf = (model) => `${model.name}@${model.version}`;
-
 // The session.
 
 function connect() {

@@ -43,25 +43,19 @@ async function keepWork() {
   }
 }
 
-const keeping = {isWanted: false, isRunning: false, last: null};
+let waiting = null;  // the timer of a change that is not stored yet
 
-// As keepWork, but at most twice a second, for changes that follow each other quickly.
-async function keepSoon() {
-  keeping.isWanted = true;
-  if (keeping.isRunning) return;
-  keeping.isRunning = true;
-  while (keeping.isWanted) {
-    await keepNow();
-    await pause(KEEP_SECONDS);
-  }
-  keeping.isRunning = false;
+// As keepWork, but once for changes that follow each other quickly.
+function keepSoon() {
+  waiting ??= setTimeout(keepNow, 1000 * KEEP_SECONDS);
 }
 
-// Stores what keepSoon has not stored yet, and waits for what it stores.
+// Stores what keepSoon has not stored yet.
 function keepNow() {
-  if (keeping.isWanted) keeping.last = keepWork();
-  keeping.isWanted = false;
-  return keeping.last;
+  if (waiting === null) return undefined;
+  clearTimeout(waiting);
+  waiting = null;
+  return keepWork();
 }
 
 async function keptWork() {

@@ -94,7 +94,7 @@ def choose_take(me):
     me.key("e")
     me.answered(2)
     me.key("3")
-    me.page.wait_until("gallery.tiles[2].getAttribute('aria-checked') === 'true'")
+    me.page.wait_until("gallery.tiles[2].getAttribute('aria-pressed') === 'true'")
 
 
 def change_over_time(me):
