@@ -24,7 +24,7 @@ class Generator {
         target_(target),
         begin_(target.Now()),
         measured_from_(begin_ + options.warm_up),
-        answered_until_(options.calls > 0 ? Time::max() : measured_from_ + options.measured) {
+        measured_until_(measured_from_ + options.measured) {
     figures_.load = load;
     if (IsOpenLoop()) {
       NextArrival();
@@ -39,8 +39,7 @@ class Generator {
       if (IsOver() && calls_.empty()) break;
       for (const EndedCall& ended : target_.Wait(NextEvent())) Take(ended);
     }
-    const Time end = measured_until_.value_or(target_.Now());
-    figures_.seconds = ToSeconds(end - measured_from_);
+    figures_.seconds = ToSeconds(measured_until_ - measured_from_);
     return std::move(figures_);
   }
 
@@ -57,18 +56,15 @@ class Generator {
     next_due_ = begin_ + Seconds(arrival_seconds_);
   }
 
-  // Whether no further call is due. The end of the measured time is then fixed, unless a number of
-  // calls was requested: then the last of them ends it.
+  // Whether no further call is due. The end of the measured time is then fixed.
   bool IsOver() {
     if (is_over_) return true;
     const Time now = target_.Now();
     const bool stopped = options_.stopped && options_.stopped();
-    if (!stopped && options_.calls > 0) return is_over_ = figures_.due >= options_.calls;
-    const Time end = options_.calls > 0 ? now : measured_from_ + options_.measured;
-    if (!stopped && now < end) return false;
-    measured_until_ = answered_until_ = std::max(measured_from_, std::min(now, end));
+    if (!stopped && now < measured_until_) return false;
+    measured_until_ = std::max(measured_from_, std::min(now, measured_until_));
     // Calls that were due before the end and were never sent.
-    for (; IsOpenLoop() && next_due_ < *measured_until_; NextArrival()) CountDue(next_due_);
+    for (; IsOpenLoop() && next_due_ < measured_until_; NextArrival()) CountDue(next_due_);
     return is_over_ = true;
   }
 
@@ -97,7 +93,7 @@ class Generator {
   Time NextEvent() {
     Time next = target_.Now() + kLongestWait;
     if (IsOver()) return next;
-    if (options_.calls == 0) next = std::min(next, measured_from_ + options_.measured);
+    next = std::min(next, measured_until_);
     const bool has_place = static_cast<int>(calls_.size()) < options_.max_in_flight;
     return IsOpenLoop() && has_place ? std::min(next, next_due_) : next;
   }
@@ -108,13 +104,11 @@ class Generator {
     calls_.erase(found);
     if (!IsOpenLoop()) idle_callers_.push_back(ended.end);
     Record(call, ended);
-    if (options_.calls > 0) last_end_ = std::max(last_end_, ended.end);
-    if (is_over_ && !measured_until_ && calls_.empty()) measured_until_ = last_end_;
   }
 
   void Record(const OpenCall& call, const EndedCall& ended) {
     const bool answered = ended.code == absl::StatusCode::kOk;
-    if (answered && ended.end >= measured_from_ && ended.end < answered_until_) {
+    if (answered && ended.end >= measured_from_ && ended.end < measured_until_) {
       ++figures_.answered_in_time;
       figures_.frames_in_time += ended.frames;
     }
@@ -130,7 +124,7 @@ class Generator {
   const CallOptions& options_;
   CallTarget& target_;
   const Time begin_, measured_from_;
-  Time answered_until_;
+  Time measured_until_;
   CallFigures figures_;
   base::Random random_{0};
   std::unordered_map<int64_t, OpenCall> calls_;
@@ -138,8 +132,6 @@ class Generator {
   double arrival_seconds_ = 0;
   Time next_due_;                   // of an open loop
   std::vector<Time> idle_callers_;  // of a closed loop: since when each has been idle
-  Time last_end_;
-  std::optional<Time> measured_until_;
   bool is_over_ = false;
 };
 

@@ -46,7 +46,6 @@ struct CallLoad {
 struct CallOptions {
   Duration warm_up = std::chrono::seconds(1);  // calls that are due before its end are not measured
   Duration measured = std::chrono::seconds(10);
-  int64_t calls = 0;  // if above 0, the number of measured calls, independent of time
   // In an open loop: the most calls in flight. Calls due beyond that are sent late and measured
   // from their due time.
   int max_in_flight = 4096;

@@ -10,7 +10,6 @@
 namespace duet::contrib::load {
 namespace {
 
-constexpr uint64_t kSeed = 0;
 constexpr double kOpeningSeconds = 1;
 constexpr Duration kMissedAfter = std::chrono::milliseconds(100);
 constexpr Duration kLongestWait = std::chrono::milliseconds(200);  // between checks of `stopped`
@@ -27,8 +26,8 @@ class LiveGenerator {
         frame_interval_(Seconds(1 / options.frame_rate_hz)) {
     figures_.sessions = options.sessions;
     for (int i = 0; i < options.sessions; ++i) {
-      sessions_.emplace_back(LiveSchedule(options, i, begin_));
-      due_.push({sessions_.back().schedule.opens(), i});
+      sessions_.emplace_back().opens = OpeningOf(options, i, begin_);
+      due_.push({sessions_.back().opens, i});
     }
   }
 
@@ -47,14 +46,11 @@ class LiveGenerator {
 
  private:
   struct Session {
-    explicit Session(LiveSchedule own) : schedule(std::move(own)) {}
-
-    LiveSchedule schedule;
-    LiveSchedule::Frame next;
+    Time opens;
     bool open = false, ended = false;
     Time opened;
-    std::vector<std::optional<Time>> due;  // of each frame so far; absent: lost on purpose
-    int received = 0;                      // final frames, without doubled ones
+    int sent = 0;      // leader frames
+    int received = 0;  // final frames, without doubled ones
   };
   struct Due {
     Time time;
@@ -73,29 +69,29 @@ class LiveGenerator {
       due_.pop();
       Session& session = sessions_[static_cast<std::size_t>(index)];
       if (session.ended) continue;
-      if (session.open) {
-        Send(index, &session);
-      } else {
+      if (!session.open) {
         session.open = true;
         session.opened = target_.Now();
         ++open_;
         target_.Open(index);
       }
-      session.next = session.schedule.Next();
-      due_.push({session.next.due, index});
+      Send(index, &session);
     }
   }
 
+  // When a frame of a session is due to be sent.
+  Time DueOf(const Session& session, int frame) const {
+    return session.opens + Seconds(frame / options_.frame_rate_hz);
+  }
+
   void Send(int index, Session* session) {
-    const LiveSchedule::Frame& frame = session->next;
-    session->due.resize(static_cast<std::size_t>(frame.index) + 1);
-    if (frame.lost) return;
-    session->due.back() = frame.due;
-    if (IsMeasured(frame.due)) {
+    const Time due = DueOf(*session, session->sent);
+    if (IsMeasured(due)) {
       ++figures_.sent;
-      figures_.late_sent.Add(target_.Now() - frame.due);
+      figures_.late_sent.Add(target_.Now() - due);
     }
-    target_.Send(index, frame.index);
+    target_.Send(index, session->sent++);
+    due_.push({DueOf(*session, session->sent), index});
   }
 
   void TakeUntil(Time until) {
@@ -121,14 +117,13 @@ class LiveGenerator {
       }
       figures_.lost += frame - session->received;
       session->received = frame + 1;
-      TakeFrame(*session, static_cast<std::size_t>(frame), event.time);
+      TakeFrame(*session, frame, event.time);
     }
   }
 
-  void TakeFrame(const Session& session, std::size_t frame, Time time) {
-    if (frame >= session.due.size() || !session.due[frame].has_value()) return;
-    const Time due = *session.due[frame];
-    if (!IsMeasured(due)) return;
+  void TakeFrame(const Session& session, int frame, Time time) {
+    const Time due = DueOf(session, frame);
+    if (frame >= session.sent || !IsMeasured(due)) return;
     const Duration latency = time - due;
     ++figures_.answered;
     figures_.latency.Add(latency);
@@ -141,16 +136,12 @@ class LiveGenerator {
     --open_;
     ++figures_.ended[ended.code];
     figures_.skipped += ended.skipped_frames;
-    figures_.interpolated += ended.gap_frames;
-    figures_.dropped += ended.late_frames;
     const bool failed = ended.code != absl::StatusCode::kOk;
     if (failed && session->received == 0) ++figures_.refused;
     // Frames that never came; of a failed session they are missed, not lost.
-    const std::size_t received = static_cast<std::size_t>(session->received);
-    for (std::size_t frame = received; frame < session->due.size(); ++frame) {
-      if (!session->due[frame].has_value()) continue;
+    for (int frame = session->received; frame < session->sent; ++frame) {
       if (!failed) ++figures_.lost;
-      if (IsMeasured(*session->due[frame])) ++figures_.missed;
+      if (IsMeasured(DueOf(*session, frame))) ++figures_.missed;
     }
   }
 
@@ -177,28 +168,11 @@ class LiveGenerator {
 
 }  // namespace
 
-LiveSchedule::LiveSchedule(const LiveOptions& options, int session, Time begin)
-    : options_(options), random_(kSeed, session) {
+Time OpeningOf(const LiveOptions& options, int session, Time begin) {
   // Whole frames later than the session before, so that the opening does not decide the phase.
   const double share = static_cast<double>(session) / options.sessions;
   const double frames = std::floor(share * kOpeningSeconds * options.frame_rate_hz);
-  const double phase = options.in_step ? 0 : share;
-  opens_ = begin + Seconds((frames + phase) / options.frame_rate_hz);
-  const Duration room = std::max(Duration{0}, options.measured - options.stall);
-  stalls_from_ = begin + options.warm_up + Seconds(random_.Uniform() * ToSeconds(room));
-  stalls_until_ = stalls_from_ + options.stall;
-  last_due_ = opens_;
-}
-
-LiveSchedule::Frame LiveSchedule::Next() {
-  Frame frame;
-  frame.index = next_++;
-  frame.due = opens_ + Seconds(frame.index / options_.frame_rate_hz) +
-              Seconds(random_.Uniform() * ToSeconds(options_.jitter));
-  if (frame.due >= stalls_from_ && frame.due < stalls_until_) frame.due = stalls_until_;
-  frame.due = last_due_ = std::max(last_due_, frame.due);
-  frame.lost = random_.Chance(options_.loss) && frame.index > 0;
-  return frame;
+  return begin + Seconds((frames + share) / options.frame_rate_hz);
 }
 
 LiveFigures RunLive(const LiveOptions& options, LiveTarget& target) {

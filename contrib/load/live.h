@@ -9,15 +9,13 @@
 
 #include "absl/status/status.h"
 #include "contrib/load/figures.h"
-#include "model/base/random.h"
 
 namespace duet::contrib::load {
 
 // How a session ended.
 struct EndedSession {
   absl::StatusCode code = absl::StatusCode::kOk;  // INTERNAL for a stream without a summary
-  // What the server counted in its summary.
-  int skipped_frames = 0, gap_frames = 0, late_frames = 0;
+  int skipped_frames = 0;                         // as the server's summary says
 };
 
 // What arrived of a session: final frames, or its end.
@@ -55,46 +53,16 @@ class LiveTarget {
 struct LiveOptions {
   int sessions = 1;
   double frame_rate_hz = 30;
-  // Whether the frames of all sessions are due at the same instants. Otherwise they are spread
-  // evenly over the interval between two frames, as those of independent people are.
-  bool in_step = false;
-  // What cameras and networks do to the frames.
-  Duration jitter{0};  // each frame is sent up to this long after it was due, in order
-  double loss = 0;     // fraction of frames that are never sent
-  // Once in the measured time each session sends nothing for this long, then all that it held back.
-  Duration stall{0};
   Duration warm_up = std::chrono::seconds(1);  // frames due before its end are not measured
   Duration measured = std::chrono::seconds(10);
   // Polled: after it returns true no further frame is sent. Optional.
   std::function<bool()> stopped;
 };
 
-// When a session sends its leader frames, independent of the answers.
-class LiveSchedule {
- public:
-  // `begin`: of the run. The same options and session give the same times.
-  LiveSchedule(const LiveOptions& options, int session, Time begin);
-
-  // When the session opens. Sessions open one after another within a second.
-  Time opens() const { return opens_; }
-
-  // A frame: when it is due to be sent, unless it is lost.
-  struct Frame {
-    int index = 0;
-    Time due;
-    bool lost = false;
-  };
-  // The next frame, in the order of indices and of times. The first is never lost.
-  Frame Next();
-
- private:
-  const LiveOptions& options_;
-  Time opens_;
-  Time stalls_from_, stalls_until_;
-  base::Random random_;
-  int next_ = 0;
-  Time last_due_;
-};
+// When a session opens and sends its first frame. Sessions open one after another within a second,
+// with their frames spread evenly over the interval between two frames, as those of independent
+// people are.
+Time OpeningOf(const LiveOptions& options, int session, Time begin);
 
 // The results of live sessions side by side. Frames are those that were sent in the measured time;
 // times run from when a leader frame was due to be sent to the arrival of the final follower frame
@@ -102,7 +70,7 @@ class LiveSchedule {
 struct LiveFigures {
   int sessions = 0;
   double seconds = 0;  // measured
-  int64_t sent = 0;    // leader frames, without those that were lost on purpose
+  int64_t sent = 0;    // leader frames
   int64_t answered = 0;
   Times late_sent;  // from when frames were due to when they were sent
   Times latency;
@@ -114,8 +82,7 @@ struct LiveFigures {
   // Of whole sessions, warm-up included. Lost: final frames that never came; doubled: that came
   // again. Both are defects of the server.
   int64_t lost = 0, doubled = 0;
-  // What the servers counted in their summaries.
-  int64_t skipped = 0, interpolated = 0, dropped = 0;
+  int64_t skipped = 0;                        // as the servers' summaries say
   std::map<absl::StatusCode, int64_t> ended;  // sessions by status
   int64_t refused = 0;                        // sessions that ended with an error before any frame
 

@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <ostream>
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
@@ -15,15 +16,12 @@
 #include "client/cli/server.h"
 #include "client/client.h"
 #include "client/error_details.h"
-#include "client/model_skeleton.h"
 #include "contrib/load/report.h"
 #include "contrib/load/server_calls.h"
 #include "contrib/load/server_sessions.h"
 #include "model/base/file.h"
 #include "model/base/program_flags.h"
 #include "model/base/program_output.h"
-#include "model/formats/motion_file.h"
-#include "model/motion/resample.h"
 
 namespace duet::contrib::load {
 namespace {
@@ -32,7 +30,6 @@ namespace cli = client::cli;
 namespace fs = std::filesystem;
 
 constexpr double kLiveRate = 30, kLowestLiveRate = 1, kHighestLiveRate = 240;  // frames a second
-constexpr int kGeneratedFrames = 300;
 constexpr char kGroup[] = "Options";                   // CLI11's name of the flags without a group
 constexpr absl::Duration kEnding = absl::Seconds(30);  // of live sessions
 
@@ -51,7 +48,7 @@ Exit codes:
 Examples:
   duet-load --server lab:50051 --callers 1,8,64
   duet-load --rate 50,100,200 --frames 460 --seconds 30 --json load.json
-  duet-load --live 20,50 --leader samples/hug.bvh --jitter 15 --loss 0.01
+  duet-load --live 20,50 --rate 60
 )";
 
 struct LoadArguments {
@@ -62,12 +59,8 @@ struct LoadArguments {
   CallOptions calls;
   int connections = 1;
   double warm_up_seconds = 1, seconds = 10;
-  bool bulk = false;
   std::vector<int> sessions;  // live sessions in place of calls; a step each
-  LiveContent live_content;
   LiveOptions live;
-  double jitter_ms = 0, stall_ms = 0;
-  std::vector<fs::path> leaders;  // of live sessions; none: generated
   fs::path json;
   bool quiet = false;
 };
@@ -88,15 +81,10 @@ void AddLoad(CLI::App* app, LoadArguments* arguments) {
       ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str()
       ->type_name("SECONDS");
-  CLI::Option* seconds =
-      app->add_option("--seconds", arguments->seconds, "Measured seconds of each step")
-          ->check(CLI::Range(0.1, 864000.0))
-          ->capture_default_str()
-          ->type_name("SECONDS");
-  app->add_option("--calls", arguments->calls.calls, "Number of measured calls, not --seconds")
-      ->check(CLI::Range(int64_t{1}, int64_t{1000000000}))
-      ->excludes(seconds)
-      ->type_name("N");
+  app->add_option("--seconds", arguments->seconds, "Measured seconds of each step")
+      ->check(CLI::Range(0.1, 864000.0))
+      ->capture_default_str()
+      ->type_name("SECONDS");
   app->add_option("--connections", arguments->connections, "Connections, which calls use in turn")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
@@ -112,68 +100,19 @@ void AddContent(CLI::App* app, LoadArguments* arguments) {
                  &arguments->content.model, "Also NAME:LABEL (default: the server's)");
   cli::AddParsed(app, kGroup, "--label", "CLASS=WEIGHT,...", client::batch::ParseLabels,
                  &arguments->content.labels, "(default: 1 for the model's first class)");
-  app->add_flag("--bulk", arguments->bulk, "Give the calls the priority of bulk calls");
   app->add_option("--json", arguments->json, "Write everything; - for standard output")
       ->type_name("FILE");
   app->add_flag("--quiet", arguments->quiet, "Do not print the current step");
 }
 
 void AddLive(CLI::App* app, LoadArguments* arguments) {
-  CLI::Option* live =
-      app->add_option(
-             "--live", arguments->sessions,
-             "Live sessions side by side; --rate is then their frames a second, default 30")
-          ->delimiter(',')
-          ->check(CLI::Range(1, 100000))
-          ->type_name("N,...");
-  for (const char* other : {"--callers", "--calls", "--frames", "--bulk"}) {
-    live->excludes(app->get_option(other));
-  }
-  const auto milliseconds = [app, live](const char* name, double* time, const char* help) {
-    app->add_option(name, *time, help)
-        ->check(CLI::Range(0.0, 60000.0))
-        ->needs(live)
-        ->type_name("MS");
-  };
-  app->add_option("--leader", arguments->leaders,
-                  "Motion file of a leader, which plays forwards and backwards; repeatable: "
-                  "sessions take them in turn (default: a generated one)")
-      ->check(CLI::ExistingFile)
-      ->needs(live)
-      ->allow_extra_args(false)
-      ->type_name("FILE");
-  app->add_option("--delay", arguments->live_content.delay_frames,
-                  "Later leader frames that the server waits for")
-      ->check(CLI::Range(0, 10))
-      ->capture_default_str()
-      ->needs(live)
-      ->type_name("FRAMES");
-  app->add_option("--plan", arguments->live_content.plan_frames, "Provisional frames of messages")
-      ->check(CLI::Range(0, 30))
-      ->capture_default_str()
-      ->needs(live)
-      ->type_name("FRAMES");
-  milliseconds("--jitter", &arguments->jitter_ms,
-               "Send each frame up to this long after it was due");
-  app->add_option("--loss", arguments->live.loss, "Share of the frames that are never sent")
-      ->check(CLI::Range(0.0, 0.9))
-      ->needs(live)
-      ->type_name("SHARE");
-  milliseconds("--stall", &arguments->stall_ms,
-               "Once in each session: send nothing for this long, then everything held back");
-  app->add_flag("--in-step", arguments->live.in_step,
-                "Send the frames of all sessions at the same time")
-      ->needs(live);
-}
-
-std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app) {
-  std::vector<std::pair<std::string, std::string>> given;
-  for (const CLI::Option* flag : app.get_options()) {
-    if (flag->count() > 0) {
-      given.emplace_back(flag->get_single_name(), absl::StrJoin(flag->results(), ","));
-    }
-  }
-  return given;
+  app->add_option("--live", arguments->sessions,
+                  "Live sessions side by side; --rate is then their frames a second, default 30")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 100000))
+      ->excludes(app->get_option("--callers"))
+      ->excludes(app->get_option("--frames"))
+      ->type_name("N,...");
 }
 
 // Runs the steps of a command line.
@@ -185,9 +124,6 @@ class LoadRun {
     arguments_.calls.stopped = arguments_.live.stopped = environment.stopped;
     arguments_.calls.warm_up = arguments_.live.warm_up = Seconds(arguments_.warm_up_seconds);
     arguments_.calls.measured = arguments_.live.measured = Seconds(arguments_.seconds);
-    arguments_.live.jitter = Seconds(arguments_.jitter_ms / 1000);
-    arguments_.live.stall = Seconds(arguments_.stall_ms / 1000);
-    if (arguments_.bulk) arguments_.content.priority = client::Priority::kBulk;
   }
 
   absl::Status Run() {
@@ -232,7 +168,7 @@ class LoadRun {
     if (absl::Status status = Describe(client, &sessions); !status.ok()) return status;
     arguments_.live.frame_rate_hz = sessions.frame_rate_hz;
     const absl::StatusOr<std::unique_ptr<LiveTarget>> target =
-        ConnectSessions(options, arguments_.connections, std::move(sessions));
+        ConnectSessions(options, arguments_.connections, sessions);
     if (!target.ok()) return target.status();
     for (const int count : arguments_.sessions) {
       if (!Begins(absl::StrCat(count, " live sessions"))) break;
@@ -249,32 +185,13 @@ class LoadRun {
           absl::StrCat("--rate: expected one rate from ", kLowestLiveRate, " to ", kHighestLiveRate,
                        " with --live, got ", absl::StrJoin(arguments_.rates, ",")));
     }
-    sessions->content = arguments_.live_content;
-    sessions->content.model = arguments_.content.model;
-    sessions->content.labels = arguments_.content.labels;
+    sessions->content = arguments_.content;
     const absl::StatusOr<client::ModelDetails> details = client.GetModel(sessions->content.model);
     if (!details.ok()) return details.status();
     sessions->model = details->model;
     report_.model = absl::StrCat(details->model.name, "@", details->model.version);
     sessions->frame_rate_hz = rate;
     sessions->longest = absl::Seconds(arguments_.warm_up_seconds + arguments_.seconds) + kEnding;
-    return ReadLeaders(details->model, rate, &sessions->leaders);
-  }
-
-  // The leaders in the model's joints, at a rate.
-  absl::Status ReadLeaders(const client::ModelInfo& model, double rate,
-                           std::vector<motion::Poses>* leaders) {
-    if (arguments_.leaders.empty())
-      leaders->push_back(SwayingLeader(model, kGeneratedFrames).poses);
-    const absl::StatusOr<motion::Skeleton> skeleton = client::ToSkeleton(model);
-    if (!skeleton.ok()) return skeleton.status();
-    formats::ReadOptions options;
-    options.skeleton = *skeleton;
-    for (const fs::path& file : arguments_.leaders) {
-      const absl::StatusOr<motion::Clip> clip = formats::ReadLeader(file, options);
-      if (!clip.ok()) return clip.status();
-      leaders->push_back(motion::Resample(clip->poses, clip->frame_rate_hz, rate));
-    }
     return absl::OkStatus();
   }
 
@@ -311,7 +228,6 @@ int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironm
   }
   Report report;
   report.program = "duet-load " DUET_VERSION;
-  report.settings = GivenFlags(app);
   absl::Status status = LoadRun(&parsed, environment, &report).Run();
   if (status.ok()) status = Write(report, parsed.json, environment.out);
   if (!status.ok()) {

@@ -140,10 +140,8 @@ Json ToJson(const LiveFigures& step) {
   json["at_server_ms"] = Distribution(step.at_server);
   json["first_frame_ms"] = Distribution(step.first_frame);
   const std::pair<const char*, int64_t> counts[] = {
-      {"late", step.late},       {"missed", step.missed},
-      {"skipped", step.skipped}, {"interpolated", step.interpolated},
-      {"dropped", step.dropped}, {"lost", step.lost},
-      {"doubled", step.doubled}, {"refused", step.refused}};
+      {"late", step.late}, {"missed", step.missed},   {"skipped", step.skipped},
+      {"lost", step.lost}, {"doubled", step.doubled}, {"refused", step.refused}};
   for (const auto& [name, count] : counts) json[name] = count;
   json["ended"] = Json::object();
   for (const auto& [code, count] : step.ended) json["ended"][CodeName(code)] = count;
@@ -203,8 +201,6 @@ std::string ToJson(const Report& report) {
   json["time"] = report.time;
   json["server"] = report.server;
   json["model"] = report.model;
-  json["settings"] = Json::object();
-  for (const auto& [name, value] : report.settings) json["settings"][name] = value;
   for (const CallFigures& step : report.calls) json["steps"].push_back(ToJson(step));
   for (const LiveFigures& step : report.live) json["live"].push_back(ToJson(step));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -2,7 +2,6 @@
 #define DUET_CONTRIB_LOAD_REPORT_H_
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "contrib/load/calls.h"
@@ -15,8 +14,7 @@ struct Report {
   std::string program;  // "duet-load 1.0.0"
   std::string time;     // start, in UTC
   std::string server;
-  std::string model;                                          // "sbu@3"
-  std::vector<std::pair<std::string, std::string>> settings;  // flags and their values
+  std::string model;  // "sbu@3"
   std::vector<CallFigures> calls;
   std::vector<LiveFigures> live;
 };

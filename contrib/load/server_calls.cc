@@ -18,6 +18,7 @@
 #include "grpcpp/support/byte_buffer.h"
 #include "grpcpp/support/client_callback.h"
 #include "grpcpp/support/slice.h"
+#include "model/motion/clip.h"
 
 namespace duet::contrib::load {
 namespace {
@@ -145,20 +146,9 @@ absl::StatusOr<std::vector<std::shared_ptr<grpc::Channel>>> OpenChannels(
   return channels;
 }
 
-motion::Clip SwayingLeader(const client::ModelInfo& model, int frames) {
-  motion::Clip leader;
-  leader.joint_names = model.joint_names;
-  leader.frame_rate_hz = model.frame_rate_hz;
-  const int joints = leader.joint_count();
-  leader.poses = motion::Poses(frames, joints);
-  for (int t = 0; t < frames; ++t) {
-    for (int j = 0; j < joints; ++j) {
-      const float phase = 0.2F * static_cast<float>(t) + static_cast<float>(j);
-      leader.at(t, j) = {0.2F * std::sin(phase), 0.1F * static_cast<float>(j),
-                         0.2F * std::cos(phase)};
-    }
-  }
-  return leader;
+motion::Vec3 SwayingJoint(int frame, int joint) {
+  const float phase = 0.2F * static_cast<float>(frame) + static_cast<float>(joint);
+  return {0.2F * std::sin(phase), 0.1F * static_cast<float>(joint), 0.2F * std::cos(phase)};
 }
 
 absl::StatusOr<CallRequest> FindRequest(const client::Client& client, const CallContent& content) {
@@ -167,10 +157,16 @@ absl::StatusOr<CallRequest> FindRequest(const client::Client& client, const Call
   const client::ModelInfo& model = details->model;
   client::SynthesisRequest request;
   request.model = content.model;
-  request.leader = SwayingLeader(model, content.frames);
+  request.leader.joint_names = model.joint_names;
+  request.leader.frame_rate_hz = model.frame_rate_hz;
+  request.leader.poses = motion::Poses(content.frames, request.leader.joint_count());
+  for (int t = 0; t < content.frames; ++t) {
+    for (int j = 0; j < request.leader.joint_count(); ++j) {
+      request.leader.at(t, j) = SwayingJoint(t, j);
+    }
+  }
   request.weights = content.labels;
   if (request.weights.empty()) request.weights = {{model.interaction_classes.front(), 1}};
-  request.priority = content.priority;
   const absl::StatusOr<v1::SynthesizeRequest> wire = client::internal::ToProto(request);
   if (!wire.ok()) return wire.status();
   if (absl::Status status = Try(client, request); !status.ok()) return status;

@@ -12,7 +12,7 @@
 #include "client/result.h"
 #include "contrib/load/calls.h"
 #include "grpcpp/channel.h"
-#include "model/motion/clip.h"
+#include "model/motion/vec3.h"
 
 namespace duet::contrib::load {
 
@@ -21,12 +21,11 @@ struct CallContent {
   client::ModelChoice model;
   int frames = 46;                          // of the leader, at the model's own rate
   std::vector<client::ClassWeight> labels;  // empty: 1 for the model's first class
-  client::Priority priority = client::Priority::kInteractive;
 };
 
-// A leader of `frames` frames: a figure that sways, in the model's joints, at its rate. Its motion
-// does not affect the cost of a call.
-motion::Clip SwayingLeader(const client::ModelInfo& model, int frames);
+// Where a joint of a generated leader is: a figure that sways. Its motion does not affect the cost
+// of a call.
+motion::Vec3 SwayingJoint(int frame, int joint);
 
 // A serialised duet.v1.SynthesizeRequest, and the model that answers it.
 struct CallRequest {

@@ -11,7 +11,6 @@
 #include "absl/strings/str_cat.h"
 #include "client/internal/proto_conversion.h"
 #include "contrib/load/inbox.h"
-#include "contrib/load/server_calls.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/client_context.h"
 #include "grpcpp/support/client_callback.h"
@@ -70,11 +69,8 @@ class Session final
       event.server_seconds = double{response_.frames().server_seconds()};
       if (event.frames > 0) events_->Add(event, false);
     } else if (response_.has_summary()) {
-      const v1::LiveSummary& summary = response_.summary();
       summed_up_ = true;
-      ended_.skipped_frames = static_cast<int>(summary.skipped_frames());
-      ended_.gap_frames = static_cast<int>(summary.gap_frames());
-      ended_.late_frames = static_cast<int>(summary.late_frames());
+      ended_.skipped_frames = static_cast<int>(response_.summary().skipped_frames());
     }
     StartRead(&response_);
   }
@@ -149,22 +145,13 @@ class Session final
   bool writing_ = false, finishing_ = false, wrote_all_ = false, stream_ended_ = false;
 };
 
-// The frame of a clip that is played forwards and backwards without end.
-int ThereAndBack(int frame, int frames) {
-  if (frames == 1) return 0;
-  const int at = frame % (2 * (frames - 1));
-  return at < frames ? at : 2 * (frames - 1) - at;
-}
-
 class ServerSessions final : public LiveTarget {
  public:
   ServerSessions(const std::vector<std::shared_ptr<grpc::Channel>>& channels,
-                 const client::ClientOptions& options, v1::LiveStart start,
-                 std::vector<motion::Poses> leaders, absl::Duration longest)
+                 const client::ClientOptions& options, v1::LiveStart start, absl::Duration longest)
       : authorization_(options.token.empty() ? "" : absl::StrCat("Bearer ", options.token)),
         longest_(longest),
         start_(std::move(start)),
-        leaders_(std::move(leaders)),
         begin_(Now()) {
     for (const auto& channel : channels) stubs_.push_back(v1::MotionSynthesis::NewStub(channel));
   }
@@ -191,16 +178,14 @@ class ServerSessions final : public LiveTarget {
 
   void Send(int session, int frame) override {
     const std::size_t index = static_cast<std::size_t>(session);
-    const motion::Poses& leader = leaders_[index % leaders_.size()];
     v1::SynthesizeLiveRequest request;
     v1::LeaderFrames* frames = request.mutable_frames();
     frames->set_first_frame(static_cast<uint32_t>(frame));
     frames->set_frame_count(1);
     frames->set_capture_seconds(ToSeconds(Now() - begin_));
-    for (const motion::Vec3& joint : leader[ThereAndBack(frame, leader.frame_count())]) {
-      frames->add_positions(joint.x);
-      frames->add_positions(joint.y);
-      frames->add_positions(joint.z);
+    for (int j = 0; j < start_.leader().joint_names_size(); ++j) {
+      const motion::Vec3 joint = SwayingJoint(frame, j);
+      for (const float value : {joint.x, joint.y, joint.z}) frames->add_positions(value);
     }
     sessions_[index]->Write(std::move(request));
   }
@@ -217,7 +202,6 @@ class ServerSessions final : public LiveTarget {
   const std::string authorization_;
   const absl::Duration longest_;
   const v1::LiveStart start_;
-  const std::vector<motion::Poses> leaders_;
   const Time begin_;
   Inbox<LiveEvent> events_;
   std::vector<std::unique_ptr<Stub>> stubs_;
@@ -226,7 +210,7 @@ class ServerSessions final : public LiveTarget {
 
 // The first message of a session with leader frames at a rate, without frames.
 // Errors: INVALID_ARGUMENT for values that the proto cannot represent.
-absl::StatusOr<v1::LiveStart> MakeLiveStart(const LiveContent& content,
+absl::StatusOr<v1::LiveStart> MakeLiveStart(const CallContent& content,
                                             const client::ModelInfo& model, double frame_rate_hz) {
   client::SynthesisRequest request;
   request.model = content.model;
@@ -240,8 +224,6 @@ absl::StatusOr<v1::LiveStart> MakeLiveStart(const LiveContent& content,
   *start.mutable_model() = wire->model();
   *start.mutable_leader() = wire->leader();
   *start.mutable_label_vector() = wire->label_vector();
-  start.set_delay_frames(static_cast<uint32_t>(content.delay_frames));
-  start.set_plan_frames(static_cast<uint32_t>(content.plan_frames));
   return start;
 }
 
@@ -249,14 +231,13 @@ absl::StatusOr<v1::LiveStart> MakeLiveStart(const LiveContent& content,
 
 absl::StatusOr<std::unique_ptr<LiveTarget>> ConnectSessions(const client::ClientOptions& options,
                                                             int connections,
-                                                            LiveSessions sessions) {
+                                                            const LiveSessions& sessions) {
   const absl::StatusOr<v1::LiveStart> start =
       MakeLiveStart(sessions.content, sessions.model, sessions.frame_rate_hz);
   if (!start.ok()) return start.status();
   const auto channels = OpenChannels(options, connections);
   if (!channels.ok()) return channels.status();
-  return std::make_unique<ServerSessions>(*channels, options, *start, std::move(sessions.leaders),
-                                          sessions.longest);
+  return std::make_unique<ServerSessions>(*channels, options, *start, sessions.longest);
 }
 
 }  // namespace duet::contrib::load

@@ -171,19 +171,6 @@ TEST(CallsTest, WarmUpIsNotMeasured) {
   EXPECT_DOUBLE_EQ(seen.seconds, 10);
 }
 
-TEST(CallsTest, NumberOfCallsIsExact) {
-  for (const CallLoad& load : {Callers(3), Rate(40)}) {
-    SimulatedServer server;
-    CallOptions options;
-    options.calls = 77;
-    const CallFigures seen = RunCalls(load, options, server);
-    EXPECT_EQ(seen.due, 77);
-    EXPECT_EQ(seen.whole_call.count(), 77);
-    // From the warm-up's end to the last answer.
-    EXPECT_DOUBLE_EQ(seen.seconds, ToSeconds(server.Now() - Time() - options.warm_up));
-  }
-}
-
 TEST(CallsTest, RejectionsAreCountedSeparately) {
   SimulatedServer server;
   server.max_calls = 2;

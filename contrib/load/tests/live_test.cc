@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -23,7 +24,6 @@ namespace duet::contrib::load {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::FloatEq;
 using ::testing::Pair;
 
 // A server that answers every leader frame, and those missing before it, a time after it was sent,
@@ -86,7 +86,7 @@ class SimulatedLiveServer final : public LiveTarget {
   }
   void End(int session, Time at, absl::StatusCode code) {
     if (!ended_.insert(session).second) return;
-    events_.emplace(at, LiveEvent{session, at, 0, 0, 0, EndedSession{code, 3, 2, 1}});
+    events_.emplace(at, LiveEvent{session, at, 0, 0, 0, EndedSession{code, 3}});
   }
 
   Time now_;
@@ -117,8 +117,6 @@ TEST(LiveGeneratorTest, MeasuresFromEachFrameToItsAnswer) {
   EXPECT_EQ(seen.late + seen.missed + seen.lost + seen.doubled + seen.refused, 0);
   EXPECT_THAT(seen.ended, ElementsAre(Pair(absl::StatusCode::kOk, 4)));
   EXPECT_EQ(seen.skipped, 4 * 3);  // what the server's summaries say
-  EXPECT_EQ(seen.interpolated, 4 * 2);
-  EXPECT_EQ(seen.dropped, 4);
   EXPECT_TRUE(seen.kept_up());
 }
 
@@ -134,16 +132,6 @@ TEST(LiveGeneratorTest, CountsLateAndMissedFrames) {
   EXPECT_EQ(seen.missed, 10);
   EXPECT_NEAR(seen.latency.Ms(100), 120, 1);
   EXPECT_EQ(seen.lost, 0);
-}
-
-TEST(LiveGeneratorTest, FramesLostOnTheWayAreNotSentAndNotMeasured) {
-  SimulatedLiveServer server;
-  LiveOptions options = Sessions(3);
-  options.loss = 0.1;
-  const LiveFigures seen = RunLive(options, server);
-  EXPECT_NEAR(static_cast<double>(seen.sent), 3 * 300 * 0.9, 40);
-  EXPECT_EQ(seen.answered, seen.sent);
-  EXPECT_EQ(seen.lost + seen.doubled + seen.missed, 0);
 }
 
 TEST(LiveGeneratorTest, FindsLostAndDoubledFrames) {
@@ -186,83 +174,23 @@ TEST(LiveGeneratorTest, CancelsSessionsThatDoNotEnd) {
   EXPECT_THAT(seen.ended, ElementsAre(Pair(absl::StatusCode::kCancelled, 2)));
 }
 
-std::vector<LiveSchedule::Frame> Frames(const LiveOptions& options, int session, int count) {
-  LiveSchedule schedule(options, session, Time());
-  std::vector<LiveSchedule::Frame> frames;
-  for (int i = 0; i < count; ++i) frames.push_back(schedule.Next());
-  return frames;
-}
-
-double SecondsOf(Time time) { return ToSeconds(time - Time()); }
-
-TEST(LiveScheduleTest, FramesAreDueAtTheRate) {
-  LiveOptions options;
+TEST(LiveGeneratorTest, FramesAreDueAtTheRate) {
+  SimulatedLiveServer server;
+  LiveOptions options = Sessions(1);
   options.frame_rate_hz = 25;
-  const std::vector<LiveSchedule::Frame> frames = Frames(options, 0, 100);
-  for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(frames[static_cast<size_t>(i)].index, i);
-    EXPECT_NEAR(SecondsOf(frames[static_cast<size_t>(i)].due), i / 25.0, 1e-6);
-    EXPECT_FALSE(frames[static_cast<size_t>(i)].lost);
+  RunLive(options, server);
+  for (const auto& [time, frame] : server.frames[0]) {
+    EXPECT_NEAR(ToSeconds(time - Time()), frame / 25.0, 1e-6);
   }
 }
 
-TEST(LiveScheduleTest, SessionsAreSpreadOverTheIntervalUnlessInStep) {
-  LiveOptions options;
-  options.frame_rate_hz = 30;
-  options.sessions = 30;  // one session a frame, if only the opening were spread
-  const auto phase = [&options](int session) {
-    const double frames = SecondsOf(LiveSchedule(options, session, Time()).opens()) * 30 + 1e-5;
-    return frames - std::floor(frames);
+TEST(LiveGeneratorTest, SessionsAreSpreadOverTheInterval) {
+  const LiveOptions options = Sessions(30);  // one session a frame, if only the opening were spread
+  const auto frames = [&options](int session) {
+    return ToSeconds(OpeningOf(options, session, Time()) - Time()) * 30 + 1e-5;
   };
-  for (int i = 0; i < 30; ++i) EXPECT_NEAR(phase(i), i / 30.0, 1e-4) << i;
-  options.in_step = true;
-  for (int i = 0; i < 30; ++i) EXPECT_NEAR(phase(i), 0, 1e-4) << i;
-  EXPECT_GT(SecondsOf(LiveSchedule(options, 29, Time()).opens()), 0.9);
-}
-
-TEST(LiveScheduleTest, JitterDelaysFramesButKeepsTheirOrder) {
-  LiveOptions options;
-  options.jitter = Seconds(0.08);  // more than two frames
-  double most = 0;
-  Time last;
-  for (const LiveSchedule::Frame& frame : Frames(options, 0, 1000)) {
-    const double late = SecondsOf(frame.due) - frame.index / 30.0;
-    EXPECT_GE(late, -1e-6);
-    EXPECT_LE(late, 0.08);
-    EXPECT_GE(frame.due, last);
-    last = frame.due;
-    most = std::max(most, late);
-  }
-  EXPECT_GT(most, 0.06);
-}
-
-TEST(LiveScheduleTest, LosesAShareOfTheFramesButNeverTheFirst) {
-  LiveOptions options;
-  options.loss = 0.2;
-  int lost = 0;
-  for (int session = 0; session < 20; ++session) {
-    const std::vector<LiveSchedule::Frame> frames = Frames(options, session, 100);
-    EXPECT_FALSE(frames[0].lost);
-    for (const LiveSchedule::Frame& frame : frames) lost += frame.lost ? 1 : 0;
-  }
-  EXPECT_NEAR(lost / 2000.0, 0.2, 0.03);
-}
-
-TEST(LiveScheduleTest, AStallHoldsFramesBackOnceInTheMeasuredTime) {
-  LiveOptions options;
-  options.warm_up = Seconds(2);
-  options.measured = Seconds(5);
-  options.stall = Seconds(0.5);
-  const std::vector<LiveSchedule::Frame> frames = Frames(options, 0, 300);
-  std::vector<double> held;
-  for (const LiveSchedule::Frame& frame : frames) {
-    const double late = SecondsOf(frame.due) - frame.index / 30.0;
-    if (late > 1e-6) held.push_back(SecondsOf(frame.due));
-  }
-  EXPECT_NEAR(static_cast<double>(held.size()), 15, 1);  // half a second of frames
-  EXPECT_EQ(held.front(), held.back());                  // sent at once
-  EXPECT_GE(held.front(), 2.5);
-  EXPECT_LE(held.front(), 7);
+  for (int i = 0; i < 30; ++i) EXPECT_NEAR(std::fmod(frames(i), 1), i / 30.0, 1e-4) << i;
+  EXPECT_GT(frames(29), 0.9 * 30);
 }
 
 using test::FakeServer;
@@ -287,17 +215,8 @@ grpc::Status Mirror(Stream* stream, std::vector<v1::SynthesizeLiveRequest>* requ
   }
   v1::SynthesizeLiveResponse response;
   response.mutable_summary()->set_skipped_frames(4);
-  response.mutable_summary()->set_gap_frames(5);
-  response.mutable_summary()->set_late_frames(6);
   if (with_summary) stream->Write(response);
   return grpc::Status::OK;
-}
-
-// A leader of one joint whose x is the frame.
-motion::Poses Counting(int frames) {
-  motion::Poses leader(frames, 1);
-  for (int t = 0; t < frames; ++t) leader.at(t, 0).x = static_cast<float>(t);
-  return leader;
 }
 
 class ServerSessionsTest : public ::testing::Test {
@@ -307,15 +226,11 @@ class ServerSessionsTest : public ::testing::Test {
     options.server_address = server_.address();
     options.deadline = test::kLongestCall;
     LiveSessions sessions;
-    sessions.content.delay_frames = 2;
-    sessions.content.plan_frames = 3;
-    sessions.model.joint_names = {"head"};
+    sessions.model.joint_names = {"head", "neck"};
     sessions.model.interaction_classes = {"hug", "kick"};
     sessions.frame_rate_hz = 25;
-    sessions.leaders = {Counting(3)};
     sessions.longest = test::kLongestCall;
-    absl::StatusOr<std::unique_ptr<LiveTarget>> target =
-        ConnectSessions(options, 1, std::move(sessions));
+    absl::StatusOr<std::unique_ptr<LiveTarget>> target = ConnectSessions(options, 1, sessions);
     EXPECT_TRUE(target.ok()) << target.status();
     return *std::move(target);
   }
@@ -357,23 +272,19 @@ TEST_F(ServerSessionsTest, SendsFramesAndReportsAnswers) {
   EXPECT_THAT(answered, ElementsAre(0, 1, 3, 4, 5));
   EXPECT_EQ(events[5].ended->code, absl::StatusCode::kOk);
   EXPECT_EQ(events[5].ended->skipped_frames, 4);
-  EXPECT_EQ(events[5].ended->gap_frames, 5);
-  EXPECT_EQ(events[5].ended->late_frames, 6);
 
   const v1::LiveStart& start = requests.front().start();
-  EXPECT_THAT(start.leader().joint_names(), ElementsAre("head"));
+  EXPECT_THAT(start.leader().joint_names(), ElementsAre("head", "neck"));
   EXPECT_EQ(start.leader().frame_rate_hz(), 25);
   EXPECT_EQ(start.leader().frame_count(), 0U);
   EXPECT_EQ(start.label_vector().weights(0).interaction_class(), "hug");
-  EXPECT_EQ(start.delay_frames(), 2U);
-  EXPECT_EQ(start.plan_frames(), 3U);
   EXPECT_EQ(start.seed(), 7U);
-  // Three frames, there and back.
-  std::vector<float> sent;
   for (std::size_t i = 1; i < requests.size(); ++i) {
-    sent.push_back(requests[i].frames().positions(0));
+    const motion::Vec3 head = SwayingJoint(answered[i - 1], 0),
+                       neck = SwayingJoint(answered[i - 1], 1);
+    EXPECT_THAT(requests[i].frames().positions(),
+                ElementsAre(head.x, head.y, head.z, neck.x, neck.y, neck.z));
   }
-  EXPECT_THAT(sent, ElementsAre(FloatEq(0), FloatEq(1), FloatEq(1), FloatEq(0), FloatEq(1)));
 }
 
 TEST_F(ServerSessionsTest, RefusalsKeepTheirCode) {

@@ -40,28 +40,28 @@ class LoadTest(unittest.TestCase):
 
     def test_counts_match_the_servers(self):
         server = self.serve()
-        report = self.load(server, "--callers", "1,4", "--calls", "24", "--frames", "92", "--connections", "2")
-        self.assertEqual([step["ended"] for step in report["steps"]], [{"OK": 24}] * 2)
+        report = self.load(server, "--callers", "1,4", "--seconds", "1", "--frames", "92", "--connections", "2")
+        calls = 0
         for step in report["steps"]:
             first, whole = (step["answers"][name] for name in ("first_chunk_ms", "whole_call_ms"))
-            self.assertEqual((first["count"], whole["count"]), (24, 24))
+            self.assertEqual(step["ended"], {"OK": step["due"]})
+            self.assertEqual((first["count"], whole["count"]), (step["due"], step["due"]))
             self.assertLessEqual(first["p50"], whole["p50"])
+            calls += step["due"]
         # One is tried before, and cancelled at the first frames.
-        tools.wait_until(lambda: sum(self.handled(server).values()) == 49, "the server's count")
-        self.assertIn(self.handled(server)["OK"], (48, 49))
+        tools.wait_until(lambda: sum(self.handled(server).values()) == calls + 1, "the server's count")
+        self.assertIn(self.handled(server)["OK"], (calls, calls + 1))
 
     def test_calls_are_sent_at_the_requested_rate(self):
         # Slow enough for a server under a sanitizer on a busy machine.
-        report = self.load(self.serve(), "--rate", "4", "--calls", "9")
-        step = report["steps"][0]
-        self.assertEqual((step["due"], step["sent"], step["ended"]), (9, 9, {"OK": 9}))
-        self.assertGreater(step["seconds"], 1)  # 9/4 s on average
+        step = self.load(self.serve(), "--rate", "4", "--seconds", "5")["steps"][0]
+        self.assertEqual((step["sent"], step["ended"]), (step["due"], {"OK": step["due"]}))
+        self.assertTrue(8 <= step["due"] <= 35, step["due"])  # 20 on average
+        self.assertEqual(step["seconds"], 5)
 
     def test_live_sessions_lose_and_double_no_frame(self):
         server = self.serve()
-        report = self.load(server, "--live", "1,3", "--rate", "15", "--seconds", "3", "--leader",
-                           tools.sample("hug"), "--leader", tools.sample("kick"), "--jitter", "20",
-                           "--loss", "0.05", "--stall", "300", "--delay", "1", "--plan", "5")
+        report = self.load(server, "--live", "1,3", "--rate", "15", "--seconds", "3")
         self.assertEqual([step["sessions"] for step in report["live"]], [1, 3])
         for step in report["live"]:
             self.assertEqual(step["ended"], {"OK": step["sessions"]})
@@ -69,8 +69,6 @@ class LoadTest(unittest.TestCase):
             self.assertEqual(step["answered"], step["sent"])
             self.assertGreater(step["sent"], 0.7 * 45 * step["sessions"])
             self.assertEqual(step["first_frame_ms"]["count"], step["sessions"])
-        # The frames that were lost on the way, over both steps.
-        self.assertGreater(sum(step["interpolated"] for step in report["live"]), 0)
 
     def test_live_sessions_beyond_the_limit_are_refused(self):
         server = self.serve("--max-calls", "2", "--client-share", "1")
@@ -80,10 +78,10 @@ class LoadTest(unittest.TestCase):
 
     def test_rejections_are_counted_by_status(self):
         server = self.serve("--max-calls", "2", "--client-share", "1")
-        report = self.load(server, "--callers", "8", "--calls", "40", "--frames", "460",
+        report = self.load(server, "--callers", "8", "--seconds", "1", "--frames", "460",
                            "--connections", "8")
         ended = report["steps"][0]["ended"]
-        self.assertEqual(sum(ended.values()), 40)
+        self.assertEqual(sum(ended.values()), report["steps"][0]["due"])
         self.assertGreater(ended["OK"], 0)
         self.assertGreater(ended["RESOURCE_EXHAUSTED"], 0)
         tools.wait_until(lambda: self.handled(server).get("ResourceExhausted")
