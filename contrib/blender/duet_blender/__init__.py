@@ -10,9 +10,9 @@ bl_info = {
     "category": "Animation",
 }
 
-from . import answers, live, operators, panel, pins, settings  # noqa: E402  (Blender wants bl_info first)
+from . import answers, operators, panel, pins, settings  # noqa: E402  (Blender wants bl_info first)
 
-_MODULES = (pins, answers, settings, live, operators, panel)
+_MODULES = (pins, answers, settings, operators, panel)
 
 
 def register():

@@ -102,31 +102,23 @@ def show(scene, index):
     answer = duet.answers[index]
     if not os.path.isfile(answer.file):
         raise DuetError("The answers of an earlier session are gone. Press React again.")
-    yield from show_file(scene, answer.file, "right", ["--skeleton", answer.file], duet.body)
+    with tempfile.TemporaryDirectory() as work:
+        file = os.path.join(work, "follower.glb")
+        yield from program.run(duet, "convert", answer.file, "--side", "right", "--skeleton", answer.file,
+                               *_body_flags(scene, os.path.join(work, "rig.glb")), "--out", file, "--quiet")
+        partner.remove_last(scene)
+        partner.add(scene, file, scene.unit_settings.scale_length / leader.metres_per_unit(scene))
     duet.chosen = index
     duet.seed = min(int(answer.seed), _LARGEST_SEED)
     duet.state = ", ".join(filter(None, (f"{partner.NAME}: seed {answer.seed}", answer.pins)))
 
 
-def show_file(scene, motion, side, flags, body, first_frame=None):
-    """A generator that shows a person of a motion file in place of the last partner, on a body of
-    DuetSettings.body. `flags`: for reading the file. `first_frame`: see partner.add()."""
+def _body_flags(scene, file):
+    """The flags for the partner's body. Writes the armature whose copy the partner is to `file`."""
     duet = scene.duet
-    with tempfile.TemporaryDirectory() as work:
-        file = os.path.join(work, "follower.glb")
-        if body != "MANNEQUIN":
-            flags = [*flags, *_rig_flags(scene, body, os.path.join(work, "rig.glb"))]
-        yield from program.run(duet, "convert", motion, "--side", side, *flags, "--out", file,
-                               "--quiet")
-        partner.remove_last(scene)
-        partner.add(scene, file, scene.unit_settings.scale_length / leader.metres_per_unit(scene),
-                    first_frame)
-
-
-def _rig_flags(scene, body, file):
-    """Writes the armature whose copy the partner is, and returns the flags for it."""
-    duet = scene.duet
-    if body == "LEADER":
+    if duet.body == "MANNEQUIN":
+        return []
+    if duet.body == "LEADER":
         partner.export_rig(scene, duet.leader, leader.metres_per_unit(scene), file)
         return ["--rig", file, *leader.joint_flags(duet, "--rig-joint-map")]
     if duet.target is None:

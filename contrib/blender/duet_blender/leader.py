@@ -15,7 +15,7 @@ class Recording:
     there have hands, feet and the top of the head.
     """
 
-    def __init__(self, scene, armature, with_pins=True):
+    def __init__(self, scene, armature):
         self.scene = scene
         self.armature = armature
         self.metres = metres_per_unit(scene)
@@ -24,7 +24,7 @@ class Recording:
             self._add(bone)
         self.frames = []  # [frames][joints][3]
         self.weights = []  # [frames][labels]
-        self.pins = pins.Sampler(scene, self.metres) if with_pins else None
+        self.pins = pins.Sampler(scene, self.metres)
 
     def _add(self, bone):
         parents = {name: index for index, (name, _, _, tail) in enumerate(self.joints) if not tail}
@@ -41,16 +41,12 @@ class Recording:
         try:
             for frame in range(scene.frame_start, scene.frame_end + 1):
                 scene.frame_set(frame)
-                self.take_frame()
+                self.frames.append(self.places())
+                self.weights.append([label.weight for label in scene.duet.labels])
                 self.pins.take(frame)
                 yield
         finally:
             scene.frame_set(before, subframe=subframe)
-
-    def take_frame(self):
-        """Records the current frame."""
-        self.frames.append(self.places())
-        self.weights.append([label.weight for label in self.scene.duet.labels])
 
     def places(self):
         """The places of the joints in the current frame."""

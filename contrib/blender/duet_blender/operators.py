@@ -5,7 +5,7 @@ import time
 
 import bpy
 
-from . import answers, leader, live, partner, program, settings
+from . import answers, partner, program, settings
 
 STEP_SECONDS = 0.02  # maximum work per tick
 TICK_SECONDS = 0.05
@@ -13,7 +13,7 @@ TICK_SECONDS = 0.05
 
 def _can_replace(context):
     """Whether the partner may be replaced."""
-    return context.mode == "OBJECT" and not live.is_playing()
+    return context.mode == "OBJECT"
 
 
 def _push_undo(message):
@@ -165,80 +165,16 @@ class DUET_OT_keep(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return partner.last(context.scene) is not None and not live.is_playing()
+        return partner.last(context.scene) is not None
 
     def execute(self, context):
         duet = context.scene.duet
-        seed = duet.answers[duet.chosen].seed if duet.answers else duet.seed  # a live partner has no answer
+        seed = duet.answers[duet.chosen].seed if duet.answers else duet.seed
         duet.state = partner.keep(context.scene, f"seed {seed}")
         return {"FINISHED"}
 
 
-class DUET_OT_play_live(bpy.types.Operator):
-    """Answers the leader while it moves: as the animation plays, or as you pose it. Esc or Stop ends
-    the session, whose motion the partner keeps"""
-
-    bl_idname = "duet.play_live"
-    bl_label = "Play live"
-    bl_options = {"REGISTER"}
-    _timer = None
-
-    @classmethod
-    def poll(cls, context):
-        return context.scene.duet.leader is not None and _can_replace(context)
-
-    def invoke(self, context, event):
-        done = self.execute(context)
-        if bpy.app.background or done != {"FINISHED"}:
-            return done
-        seconds = 0.5 / leader.frame_rate(context.scene)
-        self._timer = context.window_manager.event_timer_add(seconds, window=context.window)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context):
-        """Only starts the session. Without a window, call live.tick() until it returns False."""
-        try:
-            live.start(context.scene)
-        except program.DuetError as error:
-            return _fail(self, context, error)
-        return {"FINISHED"}
-
-    def modal(self, context, event):
-        if event.type == "ESC":
-            live.stop()
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        try:
-            goes_on = live.tick()
-        except program.DuetError as error:
-            context.window_manager.event_timer_remove(self._timer)
-            return _fail(self, context, error)
-        _redraw(context)
-        if goes_on:
-            return {"PASS_THROUGH"}
-        context.window_manager.event_timer_remove(self._timer)
-        _push_undo(self.bl_label)
-        return {"FINISHED"}
-
-
-class DUET_OT_stop_live(bpy.types.Operator):
-    """Ends the live session"""
-
-    bl_idname = "duet.stop_live"
-    bl_label = "Stop"
-    bl_options = {"REGISTER"}
-
-    @classmethod
-    def poll(cls, _context):
-        return live.is_playing()
-
-    def execute(self, _context):
-        live.stop()
-        return {"FINISHED"}
-
-
 _CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react, DUET_OT_show_eight, DUET_OT_choose,
-            DUET_OT_key_labels, DUET_OT_keep, DUET_OT_play_live, DUET_OT_stop_live)
+            DUET_OT_key_labels, DUET_OT_keep)
 
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

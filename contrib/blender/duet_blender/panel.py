@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import live, pins
+from . import pins
 
 
 class VIEW3D_PT_duet(bpy.types.Panel):
@@ -60,19 +60,6 @@ class _Part:
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_options = {"DEFAULT_CLOSED"}
-
-
-class VIEW3D_PT_duet_live(_Part, bpy.types.Panel):
-    bl_label = "Live"
-    bl_options = set()
-
-    def draw(self, context):
-        self.layout.use_property_split = True
-        self.layout.prop(context.scene.duet, "delay")
-        if live.is_playing():
-            self.layout.operator("duet.stop_live", icon="PAUSE")
-        else:
-            self.layout.operator("duet.play_live", icon="PLAY")
 
 
 class VIEW3D_PT_duet_pins(_Part, bpy.types.Panel):
@@ -134,5 +121,5 @@ class VIEW3D_PT_duet_server(_Part, bpy.types.Panel):
         self.layout.prop_search(context.scene.duet, "model", context.scene.duet, "models")
 
 
-_PANELS = (VIEW3D_PT_duet, VIEW3D_PT_duet_live, VIEW3D_PT_duet_pins, VIEW3D_PT_duet_reading, VIEW3D_PT_duet_server)
+_PANELS = (VIEW3D_PT_duet, VIEW3D_PT_duet_pins, VIEW3D_PT_duet_reading, VIEW3D_PT_duet_server)
 register, unregister = bpy.utils.register_classes_factory(_PANELS)

@@ -102,12 +102,12 @@ def _in_metres(path, metres):
     pathlib.Path(path).write_bytes(header + len(text).to_bytes(4, "little") + b"JSON" + text + rest)
 
 
-def add(scene, path, scale=1, first_frame=None):
+def add(scene, path, scale=1):
     """Imports one person, whose file is in metres, and marks them as the last answer; their
     armature.
 
-    `scale`: units of the leader's armature in a unit of the scene. `first_frame`: of the person's
-    action, by default the scene's. The scene keeps rate, range and current frame."""
+    `scale`: units of the leader's armature in a unit of the scene. The scene keeps rate, range and
+    current frame."""
     if "gltf" not in dir(bpy.ops.import_scene):
         raise DuetError("Switch on the add-on glTF 2.0, which reads the partner")
     _let_importer_run()
@@ -131,7 +131,7 @@ def add(scene, path, scale=1, first_frame=None):
         if thing.type == "MESH" and thing.parent is armature:
             thing.name = f"{NAME} body"
             _colour(thing.data.materials)
-    _place_in_time(scene.frame_start if first_frame is None else first_frame,
+    _place_in_time(scene.frame_start,
                    [action for action in bpy.data.actions if action not in actions])
     scene.frame_set(kept[4])
     return armature

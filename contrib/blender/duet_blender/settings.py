@@ -94,10 +94,6 @@ class DuetSettings(bpy.types.PropertyGroup):
         name="Best of", min=1, max=16, default=1,
         description="Number of samples that the model draws for each window; the answer is the "
                     "best of them. More take longer")
-    delay: bpy.props.IntProperty(
-        name="Delay", min=0, max=10, default=0,
-        description="Live: frames of the leader that the partner waits for. A few give a better "
-                    "reaction")
     server: bpy.props.StringProperty(name="Server", default="localhost:50051")
     program: bpy.props.StringProperty(name="Program", default="duet", subtype="FILE_PATH",
                                       description="Path of the program `duet`")

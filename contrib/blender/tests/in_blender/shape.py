@@ -142,7 +142,7 @@ for frame in (25, 45):
     scene.frame_set(frame)
     state["keyed"][frame] = [value / METRE for value in hand.thing.matrix_world.translation]
 state["pin_panel"] = scenes.drawn(duet_blender.panel.VIEW3D_PT_duet_pins)
-state["other_panels"] = [scenes.drawn(panel) for panel in duet_blender.panel._PANELS[3:]]
+state["other_panels"] = [scenes.drawn(panel) for panel in duet_blender.panel._PANELS[2:]]
 assert bpy.ops.duet.react() == {"FINISHED"}
 state["told"] = settings.answers[0].pins
 state["hands"] = {frame: place(follower(), "right_hand", frame) for frame in (25, 45)}
