@@ -1,9 +1,10 @@
-#include "contrib/load/load_program.h"
-
+// duet-load: puts a load on a Duet server and measures how fast it answers.
 #include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <memory>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,17 @@ namespace fs = std::filesystem;
 constexpr double kLiveRate = 30, kLowestLiveRate = 1, kHighestLiveRate = 240;  // frames a second
 constexpr char kGroup[] = "Options";                   // CLI11's name of the flags without a group
 constexpr absl::Duration kEnding = absl::Seconds(30);  // of live sessions
+
+// The exit codes, which --help explains.
+enum ExitCode : int { kDone = 0, kNotAnswered = 1, kBadUsage = 2, kRejected = 42 };
+
+volatile std::sig_atomic_t stopped = 0;
+
+// The first signal ends the run with its report, the second one the process.
+void StopAtSignal(int signal) {
+  stopped = 1;
+  std::signal(signal, SIG_DFL);
+}
 
 constexpr char kFooter[] = R"(
 Measures a server under load: callers that each call again after an answer (--callers), calls at a
@@ -118,10 +130,9 @@ void AddLive(CLI::App* app, LoadArguments* arguments) {
 // Runs the steps of a command line.
 class LoadRun {
  public:
-  // All of them outlive the run.
-  LoadRun(LoadArguments* arguments, const LoadEnvironment& environment, Report* report)
-      : arguments_(*arguments), environment_(environment), report_(*report) {
-    arguments_.calls.stopped = arguments_.live.stopped = environment.stopped;
+  // Both outlive the run.
+  LoadRun(LoadArguments* arguments, Report* report) : arguments_(*arguments), report_(*report) {
+    arguments_.calls.stopped = arguments_.live.stopped = [] { return stopped != 0; };
     arguments_.calls.warm_up = arguments_.live.warm_up = Seconds(arguments_.warm_up_seconds);
     arguments_.calls.measured = arguments_.live.measured = Seconds(arguments_.seconds);
   }
@@ -140,8 +151,8 @@ class LoadRun {
  private:
   // Whether a step may begin; says so.
   bool Begins(const std::string& step) {
-    if (environment_.stopped()) return false;
-    if (!arguments_.quiet) *environment_.err << "duet-load: " << step << std::endl;
+    if (stopped != 0) return false;
+    if (!arguments_.quiet) std::cerr << "duet-load: " << step << std::endl;
     return true;
   }
 
@@ -196,20 +207,17 @@ class LoadRun {
   }
 
   LoadArguments& arguments_;
-  const LoadEnvironment& environment_;
   Report& report_;
 };
 
 // JSON on standard output takes the place of the text.
-absl::Status Write(const Report& report, const fs::path& json, std::ostream* out) {
-  *out << (json == "-" ? ToJson(report) : ToText(report));
-  if (absl::Status written = base::FlushOutput(out); !written.ok()) return written;
+absl::Status Write(const Report& report, const fs::path& json) {
+  std::cout << (json == "-" ? ToJson(report) : ToText(report));
+  if (absl::Status written = base::FlushOutput(&std::cout); !written.ok()) return written;
   return json.empty() || json == "-" ? absl::OkStatus() : base::WriteFile(json, ToJson(report));
 }
 
-}  // namespace
-
-int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment) {
+int RunLoadProgram(int argc, char** argv) {
   CLI::App app("Puts a load on a Duet server and measures its answers.", "duet-load");
   app.set_version_flag("--version", "duet-load " DUET_VERSION);
   app.footer(kFooter);
@@ -222,22 +230,31 @@ int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironm
   app.option_defaults()->group("Live sessions");
   AddLive(&app, &parsed);
   try {
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {  // also --help and --version
-    return app.exit(error, *environment.out, *environment.err) == 0 ? kDone : kBadUsage;
+    return app.exit(error) == 0 ? kDone : kBadUsage;
   }
   Report report;
   report.program = "duet-load " DUET_VERSION;
-  absl::Status status = LoadRun(&parsed, environment, &report).Run();
-  if (status.ok()) status = Write(report, parsed.json, environment.out);
+  absl::Status status = LoadRun(&parsed, &report).Run();
+  if (status.ok()) status = Write(report, parsed.json);
   if (!status.ok()) {
-    *environment.err << "duet-load: " << status.message() << " ("
-                     << absl::StatusCodeToString(status.code()) << ")\n";
+    std::cerr << "duet-load: " << status.message() << " ("
+              << absl::StatusCodeToString(status.code()) << ")\n";
     return client::IsPermanent(status) ? kRejected : kNotAnswered;
   }
   if (IsAnswered(report)) return kDone;
-  *environment.err << "duet-load: nothing was answered\n";
+  std::cerr << "duet-load: nothing was answered\n";
   return kNotAnswered;
 }
 
+}  // namespace
 }  // namespace duet::contrib::load
+
+int main(int argc, char** argv) {
+  // What goes wrong is in the statuses that are counted.
+  setenv("GRPC_VERBOSITY", "NONE", 0);
+  std::signal(SIGINT, duet::contrib::load::StopAtSignal);
+  std::signal(SIGTERM, duet::contrib::load::StopAtSignal);
+  return duet::base::FinishOutput("duet-load", duet::contrib::load::RunLoadProgram(argc, argv));
+}
