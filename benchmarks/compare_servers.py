@@ -17,8 +17,6 @@ import sys
 import tempfile
 import time
 
-from load_tool import run_load
-
 HERE = pathlib.Path(__file__).resolve().parent
 SECONDS = 4
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1")
@@ -35,7 +33,13 @@ def wait_for(find, process):
 
 
 def load(build, address, callers, *model):
-    return run_load(build, address, "--callers", callers, "--seconds", SECONDS, *model)
+    """Runs duet-load with clips of 45 frames; clips a second and the median time of a call."""
+    printed = subprocess.run([build / "bin/duet-load", "--server", address, "--json", "-", "--quiet",
+                              "--frames", "45", "--callers", str(callers), "--seconds", str(SECONDS), *model],
+                             stdout=subprocess.PIPE, text=True, check=False).stdout
+    step = json.loads(printed)["steps"][0]
+    return {"clips_per_second": step["answered_per_second"],
+            "p50_ms": step["answers"]["whole_call_ms"].get("p50", 0)}
 
 
 def with_duet(build, version, folder, callers):
@@ -82,6 +86,9 @@ def engine_alone(build, version):
 
 def main():
     build, rounds = pathlib.Path(sys.argv[1]).resolve(), int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    if not (build / "bin/duet-load").exists():
+        raise SystemExit(f"expected {build}/bin/duet-load, got none; build it: scripts/configure.sh release "
+                         "-DDUET_CONTRIB_LOAD=ON && scripts/build.sh build/release duet-load")
     print("| generator | callers | duet-server: clips/s, p50 ms | eager: clips/s, p50 ms | times |")
     print("|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
