@@ -10,7 +10,6 @@ import asyncio
 import base64
 import contextlib
 import json
-import time
 
 import aiohttp
 import grpc
@@ -22,7 +21,6 @@ from aiohttp import web
 METHOD = "/duet.v1.MotionSynthesis/SynthesizeLive"
 MAX_SESSIONS = 64
 MAX_MESSAGE_BYTES = 2**20     # a start with the history of a resumed session takes most
-MAX_MESSAGES_PER_SECOND = 500
 SILENCE_SECONDS = 30          # between two messages of the browser
 PING_SECONDS = 10             # a browser that does not answer a ping is gone
 SEND_SECONDS = 10             # for a message to leave for the browser or for the server
@@ -116,14 +114,11 @@ async def close(request, socket, code, message):
 async def to_server(socket, call):
     """Passes messages on until the call ends. Reads on when the leader has ended, because only a
     socket that is being read answers pings and notices that the browser leaves."""
-    rate, has_ended = Rate(MAX_MESSAGES_PER_SECOND), False
+    has_ended = False
     while True:
         data = await received(socket)
         if has_ended:
             raise Ended(POLICY, "expected nothing after the end of the leader, got a message")
-        if not rate.take():
-            raise Ended(POLICY, f"expected at most {MAX_MESSAGES_PER_SECOND} messages in a "
-                                "second, got more")
         has_ended = not data
         try:
             async with asyncio.timeout(SEND_SECONDS):
@@ -168,17 +163,3 @@ def status_of(code, message, metadata):
     details = b"".join(value for key, value in metadata if key == grpc_web.DETAILS)
     return json.dumps({"code": code.value[0], "message": message,
                        "details": base64.b64encode(details).decode()})
-
-
-class Rate:
-    """Counts events and limits them in each second."""
-
-    def __init__(self, limit):
-        self._limit, self._second, self._count = limit, 0, 0
-
-    def take(self):
-        """Counts an event; returns whether it is within the limit."""
-        second = int(time.monotonic())
-        self._count = self._count + 1 if second == self._second else 1
-        self._second = second
-        return self._count <= self._limit

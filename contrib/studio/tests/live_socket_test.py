@@ -190,13 +190,6 @@ class LiveSocketTest(gateways.GatewayTest):
                     self.assertIn(found, code if isinstance(code, tuple) else (code,), reason)
         self.works()
 
-    def test_flood_of_messages_is_ended(self):
-        gateway = self.started(bounds="live_socket.MAX_MESSAGES_PER_SECOND = 20")
-        leader = start_message(self.leader)
-        data = frame(BINARY, leader) + b"".join(
-            frame(BINARY, frames_message(self.leader, first)) for first in range(90))
-        self.assertEqual(self.closed_by(data, gateway)[0], 1008)
-
     def test_silence_ends_the_session(self):
         gateway = self.started(bounds="live_socket.SILENCE_SECONDS = 0.3")
         self.assertEqual(self.closed_by(b"", gateway),
