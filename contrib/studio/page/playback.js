@@ -1,9 +1,8 @@
 'use strict';
-// The follower between the frames that have arrived, the recording of both people, and how fast answers come.
+// The follower between the frames that have arrived, and how fast answers come.
 
 const SETTLE_SECONDS = 0.08;   // in which a plan that was shown gives way to the final frames
 const ARRIVE_SECONDS = 0.4;    // as SETTLE_SECONDS, from a pose that nobody has synthesised
-const RECORDED_FRAMES = 900;
 const MEASURED_ANSWERS = 180;
 const SHOW_MS = 500;           // between two changes of the figures
 
@@ -62,28 +61,6 @@ class Playback {
     this.last = {time: Math.max(0, time), pose};
     this.shown = pose.map((value, i) => value + this.offset[i]);
     return this.shown;
-  }
-}
-
-// The last frames of both people.
-class Recording {
-  constructor() { this.pairs = []; }
-
-  get frames() { return this.pairs.length; }
-
-  add(leader, follower) {
-    if (!leader || !follower) return;
-    this.pairs.push([leader, follower]);
-    if (this.pairs.length > RECORDED_FRAMES) this.pairs.shift();
-  }
-
-  // "duet-motion" JSON.
-  write(joints, frameRate) {
-    const nest = (who) => this.pairs.map((pair) => joints.map(
-        (_, joint) => Array.from(pair[who].subarray(joint * 3, joint * 3 + 3))));
-    return JSON.stringify({format: 'duet-motion', version: 1, unit: 'metres', up_axis: 'y-up',
-                           joint_names: joints, frame_rate_hz: frameRate, leader: nest(0),
-                           follower: nest(1)});
   }
 }
 

@@ -18,10 +18,9 @@ const KEYS = {ArrowUp: 'forward', ArrowDown: 'back', ArrowLeft: 'left', ArrowRig
 
 const spar = {
   models: [], samples: [], model: null, body: null, leader: null, choreography: null,
-  session: null, playback: new Playback(), recording: new Recording(),
+  session: null, playback: new Playback(),
   latencies: new Latencies(element('figures')), weights: {}, held: new Set(),
   elapsed: 0,      // seconds since the last frame was sent
-  poses: [],       // the leader's last frames, for the recording: [index, pose]
   lates: [],       // [time, frames] by which answers were late
   behind: 2,       // frames by which the follower is shown late
   seen: false,     // the follower has arrived
@@ -63,7 +62,7 @@ function connect() {
   const on = {
     restart() {
       spar.playback.clear();
-      Object.assign(spar, {elapsed: 0, poses: [], lates: []});
+      Object.assign(spar, {elapsed: 0, lates: []});
     },
     state(name, message) {
       root.dataset.session = name;
@@ -97,12 +96,7 @@ function takeFrames(part) {
   spar.playback.take(session.follower, part);
   latencies.add(1000 * part.latency);
   spar.lates.push([performance.now(), frameNow() - (part.first + part.poses.length - 1)]);
-  part.poses.forEach((pose, i) => {
-    while (spar.poses.length && spar.poses[0][0] < part.first + i) spar.poses.shift();
-    if (spar.poses[0]?.[0] === part.first + i) spar.recording.add(spar.poses.shift()[1], pose);
-  });
   root.dataset.frames = session.follower.end;
-  root.dataset.recorded = spar.recording.frames;
 }
 
 // Changes the labels within `ease` seconds. `weights` of the classes that are not named are 0.
@@ -134,7 +128,7 @@ async function chooseModel(model) {
   spar.session = null;
   const leader = new Leader(body, rest);
   const choreography = new Choreography(leader, moves, () => distance(body, leader.pose, spar.partner));
-  Object.assign(spar, {model, body, leader, choreography, recording: new Recording(), seen: false, asked: null});
+  Object.assign(spar, {model, body, leader, choreography, seen: false, asked: null});
   spar.playback = new Playback();  // it begins where showStage places the partner
   choreography.began = (move) => {
     followMove(move);
@@ -234,8 +228,6 @@ function advance(seconds) {
     poses.push(Float32Array.from(leader.pose));
   }
   if (!poses.length || !session) return;
-  poses.forEach((pose, i) => spar.poses.push([session.leader.end + i, pose]));
-  if (spar.poses.length > 2 * RECORDED_FRAMES) spar.poses.splice(0, RECORDED_FRAMES);
   session.add(poses, performance.now() / 1000);
 }
 
@@ -350,9 +342,6 @@ function connectKeys() {
 function connectControls() {
   element('model').addEventListener('change', attempt(
       () => chooseModel(spar.models.find((model) => nameOf(model) === element('model').value))));
-  for (const button of element('records').children) {
-    button.addEventListener('click', attempt(() => record(button.dataset.format)));
-  }
   // A hidden page draws nothing, so it sends nothing either.
   let hiding = null;
   document.addEventListener('visibilitychange', () => {
@@ -363,15 +352,6 @@ function connectControls() {
       connect();
     }
   });
-}
-
-async function record(format) {
-  const {recording, model} = spar;
-  if (recording.frames < 2) throw new Error('There is nothing to record yet.');
-  tell('Writing the file …');
-  const query = new URLSearchParams({format, name: `spar_${model.name}@${model.version}`});
-  await save(await fetchFrom(`/write?${query}`, {
-    method: 'POST', body: recording.write(model.joint_names, FRAME_RATE)}));
 }
 
 async function start() {
