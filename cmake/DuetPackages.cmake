@@ -12,6 +12,7 @@ find_package(Eigen3 3.4 CONFIG REQUIRED)
 if(NOT DUET_CLIENT_ONLY)
   find_package(HWY CONFIG REQUIRED)
   find_package(prometheus-cpp CONFIG REQUIRED)
+  find_library(DUET_LIBEVENT event REQUIRED)  # Debian ships no LibeventConfig.cmake
   if(DUET_BUILD_TESTS)
     find_package(GTest CONFIG REQUIRED)
   endif()

@@ -139,7 +139,7 @@ std::string Reachable(const std::string& host) {
   return host == "::" ? "::1" : host;
 }
 
-// Sends `text`, which may be empty, to a server on this machine, ends the output, and returns the
+// Sends `text` to a server on this machine, or ends the output if it is empty, and returns the
 // first line that the server sends: empty if it only ends the connection. If `address` means every
 // interface, this machine's loopback address is used. Blocks, each step for at most
 // `timeout_seconds`. Fails with UNAVAILABLE and the step.
@@ -167,7 +167,7 @@ absl::StatusOr<std::string> Ask(const common::ListenAddress& address, absl::stri
     return Failure("cannot connect", std::strerror(errno));
   }
   if (send(descriptor, text.data(), text.size(), MSG_NOSIGNAL) < 0 ||
-      shutdown(descriptor, SHUT_WR) != 0) {
+      (text.empty() && shutdown(descriptor, SHUT_WR) != 0)) {
     return Failure("cannot send", std::strerror(errno));
   }
   char answer[256];

@@ -1,13 +1,15 @@
 #ifndef DUET_SERVER_METRICS_METRICS_ENDPOINT_H_
 #define DUET_SERVER_METRICS_METRICS_ENDPOINT_H_
 
-#include <functional>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
+#include <event2/event.h>
+#include <event2/http.h>
 
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 
 namespace duet::server::metrics {
@@ -18,10 +20,7 @@ struct MetricsEndpointOptions {
   std::function<std::string()> render;  // the Prometheus text
   std::function<bool()> healthy;        // whether the server is still reachable
   std::function<bool()> ready;          // whether calls are being served
-  // Maximum duration of a connection, from accept to close, and maximum number of connections. A
-  // new connection replaces the oldest.
-  double connection_seconds = 5;
-  std::size_t max_connections = 256;
+  double idle_seconds = 5;  // maximum time that a client may neither send nor read anything
 };
 
 // A small HTTP server beside gRPC: GET /metrics for Prometheus, /healthz (200 while the process is
@@ -34,27 +33,28 @@ class MetricsEndpoint {
   // Fails with UNAVAILABLE and the reason if it cannot listen on the address.
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(MetricsEndpointOptions options);
 
-  virtual ~MetricsEndpoint() = default;
-  virtual int port() const = 0;
+  ~MetricsEndpoint();
+  MetricsEndpoint(const MetricsEndpoint&) = delete;
+  MetricsEndpoint& operator=(const MetricsEndpoint&) = delete;
+
+  int port() const { return port_; }
+
+ private:
+  template <typename Part>
+  using Owned = std::unique_ptr<Part, void (*)(Part*)>;
+
+  explicit MetricsEndpoint(MetricsEndpointOptions options);
+  absl::Status Listen();
+  void Answer(evhttp_request* request) const;
+
+  const MetricsEndpointOptions options_;
+  const int stop_;  // an eventfd: the only part of the loop that other threads may use
+  const Owned<event_base> loop_;
+  const Owned<evhttp> http_;
+  const Owned<event> stopped_;
+  int port_ = 0;
+  std::thread thread_;
 };
-
-// The content of one page of the endpoint.
-struct HttpPage {
-  bool is_good = true;  // status 200, otherwise 503
-  std::string content_type = "text/plain";
-  std::string body;
-};
-
-// Path -> function that makes the page.
-using HttpPages = std::map<std::string, std::function<HttpPage()>, std::less<>>;
-
-// The largest head of a request, in bytes.
-inline constexpr std::size_t kMaxHttpHeadBytes = 8192;
-
-// Returns the whole response (RFC 9112) to what a client has sent so far, or nullopt while the head
-// of its request is incomplete. Serves GET and HEAD of known pages; anything else gets 400, 404,
-// 405 or 431. Request bodies are not read. The connection ends with the response.
-std::optional<std::string> HttpReply(std::string_view received, const HttpPages& pages);
 
 }  // namespace duet::server::metrics
 

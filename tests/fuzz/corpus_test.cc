@@ -54,7 +54,6 @@ constexpr Target kTargets[] = {
     {"dataset_index", DatasetIndex},
     {"dataset_layout", DatasetLayout},
     {"gltf", Gltf},
-    {"http_request", HttpRequest},
     {"joint_map", JointMap},
     {"json_motion", JsonMotion},
     {"keyframes", Keyframes},

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,7 +25,6 @@
 #include "model/messages/message_text.h"
 #include "server/common/clock.h"
 #include "server/config/load_config.h"
-#include "server/metrics/metrics_endpoint.h"
 #include "server/security/secret_files.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/reply_mapping.h"
@@ -155,22 +153,6 @@ Broken AccessFile(absl::string_view input) {
     }
   }
   return "";
-}
-
-Broken HttpRequest(absl::string_view input) {
-  const server::metrics::HttpPages pages = {
-      {"/metrics",
-       [] {
-         return server::metrics::HttpPage{true, "text/plain", "up 1\n"};
-       }},
-      {"/readyz", [] {
-         return server::metrics::HttpPage{false, "text/plain", "loading\n"};
-       }}};
-  const std::optional<std::string> reply = server::metrics::HttpReply(Std(input), pages);
-  if (!reply.has_value()) {
-    return input.size() > server::metrics::kMaxHttpHeadBytes ? "an endless head has no answer" : "";
-  }
-  return absl::StartsWith(*reply, "HTTP/1.1 ") ? "" : "a reply is no HTTP";
 }
 
 Broken CallMetadata(absl::string_view input) {

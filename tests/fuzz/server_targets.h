@@ -11,7 +11,6 @@ Broken SynthesisRequest(absl::string_view input);  // the bytes of a message
 Broken SynthesisFields(absl::string_view input);   // the same in text format
 Broken ServerConfigText(absl::string_view input);
 Broken AccessFile(absl::string_view input);
-Broken HttpRequest(absl::string_view input);   // of the metrics port
 Broken CallMetadata(absl::string_view input);  // traceparent, request id, peer: a line each
 
 }  // namespace duet::fuzz
