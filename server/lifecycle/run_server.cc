@@ -362,10 +362,8 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   RaiseDescriptorLimit();
   // If the reader of the log exits, log lines are lost, but no call is.
   std::signal(SIGPIPE, SIG_IGN);
-  metrics::QueuedLogSink::Options log;
-  log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
   // Outlives everything that logs, and writes the last lines before the process exits.
-  metrics::QueuedLogSink queued_sink(std::move(sink), log);
+  metrics::QueuedLogSink queued_sink(std::move(sink));
   const auto read_settings = [&] { return config::ResolveSettings(read(), cores, memory); };
   return Serve(settings, read_settings, stop, queued_sink).ok() ? kExitStopped : kExitFailed;
 }

@@ -53,10 +53,6 @@ std::string Line(absl::Time now, Severity severity, std::string_view event, cons
 
 }  // namespace
 
-std::string DroppedLinesNotice(std::uint64_t dropped, absl::Time now) {
-  return Line(now, Severity::kWarning, "log_lines_dropped", {{"dropped", dropped}});
-}
-
 JsonLog::~JsonLog() { TellUnlogged(); }
 
 void JsonLog::CallFinished(const CallRecord& record) {

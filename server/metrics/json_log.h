@@ -1,7 +1,6 @@
 #ifndef DUET_SERVER_METRICS_JSON_LOG_H_
 #define DUET_SERVER_METRICS_JSON_LOG_H_
 
-#include <cstdint>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "server/metrics/call_record.h"
 #include "server/metrics/log_sink.h"
@@ -23,9 +23,6 @@ struct LogOptions {
   Severity level = Severity::kInfo;  // minimum severity
   int refusals_per_second = 10;      // for each status code; the rest is counted
 };
-
-// Returns the line that reports how many log lines were dropped (QueuedLogSink's drop_notice).
-std::string DroppedLinesNotice(std::uint64_t dropped, absl::Time now = absl::Now());
 
 // Writes one line of JSON for each call and for each event of the server.
 //

@@ -28,13 +28,13 @@ bool StreamLogSink::Write(std::string_view line) {
 // Shared by the writing thread and the threads that log.
 class QueuedLogSink::Queue {
  public:
-  Queue(std::shared_ptr<LogSink> sink, Options options)
-      : sink_(std::move(sink)), options_(std::move(options)) {}
+  Queue(std::shared_ptr<LogSink> sink, std::size_t capacity)
+      : sink_(std::move(sink)), capacity_(capacity) {}
 
   bool Push(std::string_view line) {
     {
       common::MutexLock lock(mutex_);
-      if (lines_.size() >= options_.capacity) {
+      if (lines_.size() >= capacity_) {
         ++dropped_;
         return false;
       }
@@ -44,23 +44,15 @@ class QueuedLogSink::Queue {
     return true;
   }
 
-  std::uint64_t dropped() const {
-    common::MutexLock lock(mutex_);
-    return dropped_;
-  }
+  std::uint64_t dropped() const { return dropped_; }
 
   // Runs on the writing thread until the queue is closed and empty.
   void Run() {
-    Batch batch;
-    std::uint64_t reported = 0;  // lost lines that notices have reported
-    while (Next(&batch)) {
-      std::uint64_t lost = 0;
-      for (const std::string& line : batch.lines) lost += sink_->Write(line) ? 0 : 1;
-      CountLost(lost);
-      // Lines are dropped only while the queue is full, so they followed the lines of the batch. If
-      // the notice is lost as well, the next one reports all lines.
-      const std::uint64_t unreported = batch.dropped + lost - reported;
-      if (unreported > 0 && sink_->Write(options_.drop_notice(unreported))) reported += unreported;
+    std::vector<std::string> lines;
+    while (Next(&lines)) {
+      for (const std::string& line : lines) {
+        if (!sink_->Write(line)) ++dropped_;
+      }
     }
     common::MutexLock lock(mutex_);
     finished_ = true;
@@ -79,38 +71,28 @@ class QueuedLogSink::Queue {
   }
 
  private:
-  struct Batch {
-    std::vector<std::string> lines;
-    std::uint64_t dropped = 0;  // lines lost since the start, when the batch was taken
-  };
-
   // Waits for lines and takes all of them. Returns false if the queue is closed and empty.
-  bool Next(Batch* batch) {
+  bool Next(std::vector<std::string>* lines) {
     common::MutexLock lock(mutex_);
     while (lines_.empty() && !closed_) changed_.Wait(mutex_);
-    batch->lines = std::exchange(lines_, {});
-    batch->dropped = dropped_;
-    return !batch->lines.empty();
-  }
-
-  void CountLost(std::uint64_t lines) {
-    common::MutexLock lock(mutex_);
-    dropped_ += lines;
+    *lines = std::exchange(lines_, {});
+    return !lines->empty();
   }
 
   const std::shared_ptr<LogSink> sink_;
-  const Options options_;
-  mutable common::Mutex mutex_;
+  const std::size_t capacity_;
+  std::atomic<std::uint64_t> dropped_{0};
+  common::Mutex mutex_;
   common::CondVar changed_;
   std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
-  std::uint64_t dropped_ DUET_GUARDED_BY(mutex_) = 0;
   bool closed_ DUET_GUARDED_BY(mutex_) = false;
   bool finished_ DUET_GUARDED_BY(mutex_) = false;
 };
 
-QueuedLogSink::QueuedLogSink(std::shared_ptr<LogSink> sink, const Options& options)
-    : queue_(std::make_shared<Queue>(std::move(sink), options)),
-      patience_(options.patience),
+QueuedLogSink::QueuedLogSink(std::shared_ptr<LogSink> sink, std::size_t capacity,
+                             std::chrono::milliseconds patience)
+    : queue_(std::make_shared<Queue>(std::move(sink), capacity)),
+      patience_(patience),
       writer_([queue = queue_] { queue->Run(); }) {}
 
 QueuedLogSink::~QueuedLogSink() {

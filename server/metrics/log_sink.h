@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -50,26 +49,20 @@ class StreamLogSink final : public LogSink {
 
 // Puts a bounded queue and a thread before a sink that may be slow or stuck, such as a pipe without
 // a reader, so that Write never blocks. Lines are dropped and counted if the queue is full or the
-// sink loses them. A line that reports their number follows as soon as the sink accepts lines
-// again.
+// sink loses them.
 //
-//   QueuedLogSink log(std::make_shared<StreamLogSink>(stderr), options);
+//   QueuedLogSink log(std::make_shared<StreamLogSink>(stderr));
 //   ... log.Write(line) from any thread ...
 //   // The destructor writes the remaining lines.
 //
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class QueuedLogSink final : public LogSink {
  public:
-  struct Options {
-    std::size_t capacity = 4096;  // waiting lines, 1 or more
-    // Maximum time that the destructor waits for a stuck sink before it drops the remaining lines.
-    std::chrono::milliseconds patience = std::chrono::seconds(5);
-    // The line that reports lost lines. Required; called on the writing thread.
-    std::function<std::string(std::uint64_t dropped)> drop_notice;
-  };
-
-  // Shares the sink, because a thread that is stuck in the sink outlives this object.
-  QueuedLogSink(std::shared_ptr<LogSink> sink, const Options& options);
+  // `capacity`: waiting lines, 1 or more. `patience`: maximum time that the destructor waits for a
+  // stuck sink before it drops the remaining lines. Shares the sink, because a thread that is stuck
+  // in the sink outlives this object.
+  explicit QueuedLogSink(std::shared_ptr<LogSink> sink, std::size_t capacity = 4096,
+                         std::chrono::milliseconds patience = std::chrono::seconds(5));
   // Writes the remaining lines, as long as the sink accepts them.
   ~QueuedLogSink() override;
   QueuedLogSink(const QueuedLogSink&) = delete;

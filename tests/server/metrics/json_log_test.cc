@@ -173,13 +173,5 @@ TEST_F(JsonLogTest, AlwaysLogsActionsOfAdministrators) {
   EXPECT_EQ(sink_.Last()["message"], "no such model");
 }
 
-TEST(DroppedLinesNoticeTest, IsAValidLogLine) {
-  const json line = json::parse(DroppedLinesNotice(7, absl::FromUnixMicros(1650000000123456)));
-  EXPECT_EQ(line["time"], "2022-04-15T05:20:00.123456Z");
-  EXPECT_EQ(line["severity"], "WARNING");
-  EXPECT_EQ(line["event"], "log_lines_dropped");
-  EXPECT_EQ(line["dropped"], 7);
-}
-
 }  // namespace
 }  // namespace duet::server::metrics
