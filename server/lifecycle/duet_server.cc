@@ -31,6 +31,8 @@ constexpr double kLookSeconds = 0.05;
 // Interval at which the service checks the duration of its calls. It is short so that a request
 // that arrives slowly is noticed before much of it has arrived.
 constexpr double kCheckTimeSeconds = 0.02;
+// So many failed self-checks in a row make the server unhealthy: a restart would help.
+constexpr int kUnhealthy = 3;
 // Timeout of a self-check.
 constexpr double kSelfCheckTimeoutSeconds = 5;
 // A batch takes milliseconds: workers that finish none for this long while windows wait hang.
@@ -42,12 +44,6 @@ constexpr double kTrimSeconds = 1;
 constexpr std::size_t kAdminRequestBytes = std::size_t{64} << 10;
 constexpr std::size_t kAdminTransportBytes = std::size_t{16} << 20;
 constexpr int kAdminCalls = 32;
-
-service::RequestLimits Limits(const v1::ServerConfig& settings) {
-  service::RequestLimits limits;
-  limits.max_request_bytes = settings.max_request_bytes();
-  return limits;
-}
 
 batching::BatcherOptions Batching(const v1::ServerConfig& settings) {
   return {static_cast<int>(settings.workers()),
@@ -230,7 +226,7 @@ absl::Status DuetServer::Listen(std::function<absl::Status()> self_check) {
   endpoint.host = metrics->host;
   endpoint.port = metrics->port;
   endpoint.render = [this] { return metrics_.Render(); };
-  endpoint.healthy = [this] { return self_check_ == nullptr || self_check_->healthy(); };
+  endpoint.healthy = [this] { return failed_checks_ < kUnhealthy; };
   endpoint.ready = [this] { return Ready(); };
   absl::StatusOr<std::unique_ptr<metrics::MetricsEndpoint>> started =
       metrics::MetricsEndpoint::Start(std::move(endpoint));
@@ -272,29 +268,31 @@ void DuetServer::Watch(std::function<absl::Status()> self_check) {
     log_.TellUnlogged();
   }));
   if (settings_.self_check_seconds() <= 0) return;
-  SelfCheckOptions check;
-  check.interval_seconds = settings_.self_check_seconds();
-  check.check = std::move(self_check);
-  if (check.check == nullptr) {
-    check.check = [this] { return CheckItself(); };
-  }
-  const double limit = settings_.self_check_seconds() + settings_.watchdog_seconds();
   if (settings_.watchdog_seconds() > 0) {
     stuck_ = std::make_unique<LastResort>(
         "stuck", "no self-check succeeded for watchdog_seconds; the process ends to be restarted",
         kExitStuck);
-    stuck_->Set(limit);
+    stuck_->Set(settings_.self_check_seconds() + settings_.watchdog_seconds());
   }
-  check.checked = [this, limit](const absl::Status& status, bool changed) {
-    if (!status.ok()) {
-      metrics_.SelfCheckFailed();
-      log_.Error("self_check_failed", {{"message", std::string(status.message())}});
-    } else if (stuck_ != nullptr) {
-      stuck_->Set(limit);
-    }
-    if (changed) SetReachable(status.ok());
-  };
-  self_check_ = std::make_unique<SelfCheck>(std::move(check));
+  if (self_check == nullptr) {
+    self_check = [this] { return CheckItself(); };
+  }
+  self_check_ = std::make_unique<common::RepeatedTask>(
+      settings_.self_check_seconds(), [this, check = std::move(self_check)] { Checked(check()); });
+}
+
+void DuetServer::Checked(const absl::Status& status) {
+  const bool changed = status.ok() != (failed_checks_ == 0);
+  failed_checks_ = status.ok() ? 0 : failed_checks_ + 1;
+  if (!status.ok()) {
+    metrics_.SelfCheckFailed();
+    log_.Error("self_check_failed", {{"message", std::string(status.message())}});
+  } else if (stuck_ != nullptr) {
+    stuck_->Set(settings_.self_check_seconds() + settings_.watchdog_seconds());
+  }
+  if (!changed) return;
+  if (status.ok()) log_.Info("self_check_recovered", {});
+  UpdateHealth();
 }
 
 absl::Status DuetServer::CheckItself() {
@@ -311,9 +309,7 @@ absl::Status DuetServer::CheckItself() {
   return absl::UnavailableError("windows wait, and no worker finishes a batch");
 }
 
-bool DuetServer::Ready() const {
-  return !draining_ && reachable_ && admission_.state() == service::Admission::State::kServing;
-}
+bool DuetServer::Ready() const { return serving_ && failed_checks_ == 0; }
 
 void DuetServer::Configure(const v1::ServerConfig& settings) {
   ConfigureModels(settings, manager_);
@@ -354,8 +350,7 @@ absl::Status DuetServer::Serve() {
 }
 
 void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
-  draining_ = true;  // from here on the server reports that it is not ready
-  SetHealth(false);
+  SetHealth(false);  // from here on the server reports that it is not ready
   control_.Stop();
   log_.Info("draining", {{"calls", admission_.calls()}});
   bool patient = settings_.drain_seconds() <= 0 || wait(settings_.drain_seconds());
@@ -380,7 +375,7 @@ void DuetServer::Close() {
   // Shutdown's deadline would end the rest as CANCELLED, without a message.
   service_.FinishAborted(kLastMessageSeconds);
   // gRPC 1.51 crashes if a call within the process begins while the server shuts down.
-  if (self_check_ != nullptr) self_check_->Stop();
+  self_check_.reset();
   if (stuck_ != nullptr) stuck_->Set(0);
   grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
 }
@@ -390,17 +385,11 @@ void DuetServer::SetHealth(bool serving) {
   UpdateHealth();
 }
 
-void DuetServer::SetReachable(bool reachable) {
-  reachable_ = reachable;
-  if (reachable) log_.Info("self_check_recovered", {});
-  UpdateHealth();
-}
-
 void DuetServer::UpdateHealth() {
   common::MutexLock lock(health_mutex_);
   grpc::HealthCheckServiceInterface* health = grpc_.server->GetHealthCheckService();
   const std::string service = service::MotionSynthesisService::kServiceName;
-  const bool healthy = serving_ && reachable_;
+  const bool healthy = Ready();
   health->SetServingStatus("", healthy);
   health->SetServingStatus(service, healthy);
   std::set<std::string> served;

@@ -110,8 +110,8 @@ class DuetServer {
   bool Ready() const;
   // Sets the status of the server and of each model in gRPC's health service.
   void SetHealth(bool serving);
-  // Applies the result of the last self-check.
-  void SetReachable(bool reachable);
+  // Takes the result of a self-check.
+  void Checked(const absl::Status& status);
   void UpdateHealth();
   void Close();
   metrics::ReadValues ReadValues(const metrics::LogSink& sink) const;
@@ -131,15 +131,14 @@ class DuetServer {
   std::string engine_;  // of the models; changes before calls are admitted
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
-  std::atomic<bool> serving_{false};  // reported by the health service while reachable_
-  std::atomic<bool> draining_{false};
-  std::atomic<bool> reachable_{true};  // by the last self-check
+  std::atomic<bool> serving_{false};   // from Serve to Drain
+  std::atomic<int> failed_checks_{0};  // self-checks in a row
   common::Mutex health_mutex_;
   std::set<std::string> health_models_ DUET_GUARDED_BY(health_mutex_);  // ever told of
   HeapTrimmer heap_trimmer_;
   std::vector<std::unique_ptr<common::RepeatedTask>> watch_;
-  std::unique_ptr<LastResort> stuck_;      // null without a limit: see watchdog_seconds
-  std::unique_ptr<SelfCheck> self_check_;  // null when the options want none
+  std::unique_ptr<LastResort> stuck_;                 // null without watchdog_seconds
+  std::unique_ptr<common::RepeatedTask> self_check_;  // null without self_check_seconds
   // Used only by the self-check: the batches that it saw last, and since when the queue moves.
   std::uint64_t seen_batches_ = 0;
   common::TimePoint queue_moved_;

@@ -186,18 +186,6 @@ absl::Status CheckListener(const std::string& host, int port, double timeout_sec
   return Ask({host, port}, "", timeout_seconds).status();
 }
 
-SelfCheck::SelfCheck(SelfCheckOptions options)
-    : options_(std::move(options)),
-      task_(
-          std::make_unique<common::RepeatedTask>(options_.interval_seconds, [this] { Check(); })) {}
-
-void SelfCheck::Check() {
-  const absl::Status status = options_.check();
-  const bool changed = status.ok() != passes();
-  failures_ = status.ok() ? 0 : failures_ + 1;
-  options_.checked(status, changed);
-}
-
 absl::Status CheckHealth(const v1::ServerConfig& settings, double timeout_seconds) {
   const std::optional<common::ListenAddress> metrics = common::AddressOf(settings.metrics_listen());
   if (!metrics.has_value()) {

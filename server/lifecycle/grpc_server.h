@@ -5,16 +5,13 @@
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server.h>
 
-#include <atomic>
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
-#include "server/common/background_thread.h"
 #include "server/common/listen_address.h"
 
 namespace duet::server::lifecycle {
@@ -60,38 +57,6 @@ absl::Status CheckAnswers(grpc::Server& server, double timeout_seconds);
 // `host` is an address that the server listens on; if it means every interface, this machine's
 // loopback address is used. Fails with UNAVAILABLE and the step that failed.
 absl::Status CheckListener(const std::string& host, int port, double timeout_seconds);
-
-struct SelfCheckOptions {
-  double interval_seconds = 10;
-  std::function<absl::Status()> check;  // such as CheckListener
-  // Called with each result. `changed`: the previous check had another result; the first one counts
-  // as a change if it fails.
-  std::function<void(const absl::Status& status, bool changed)> checked;
-};
-
-// Runs a check periodically on a thread of its own.
-class SelfCheck {
- public:
-  explicit SelfCheck(SelfCheckOptions options);
-
-  // Ends the checks, and waits for one that is running. The last result stays. Call it on the
-  // thread that destroys the object.
-  void Stop() { task_ = nullptr; }
-
-  // False after a failed check, until one succeeds: no new calls should arrive.
-  bool passes() const { return failures_ == 0; }
-  // False after three failed checks in a row, until one succeeds: a restart would help.
-  bool healthy() const { return failures_ < kFailures; }
-
- private:
-  static constexpr int kFailures = 3;
-
-  void Check();
-
-  const SelfCheckOptions options_;
-  std::atomic<int> failures_{0};
-  std::unique_ptr<common::RepeatedTask> task_;  // null after Stop
-};
 
 // Asks the server that runs on this machine with these settings for /healthz, which needs neither
 // certificates nor tokens. Without a metrics port, checks whether its gRPC port accepts

@@ -9,11 +9,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <string>
-#include <thread>
 
 #include "absl/strings/str_cat.h"
 #include "duet/v1/synthesis.grpc.pb.h"
@@ -107,33 +105,6 @@ TEST(CheckListenerTest, ErrorNamesAPortWithoutAListener) {
   listener.Close();
   EXPECT_THAT(CheckListener("127.0.0.1", listener.port(), 60),
               StatusIs(StatusCode::kUnavailable, HasSubstr("cannot connect")));
-}
-
-TEST(SelfCheckTest, UnhealthyAfterThreeFailuresUntilASuccess) {
-  std::atomic<bool> well{false};
-  std::atomic<int> failures{0};
-  SelfCheckOptions options;
-  options.interval_seconds = 0.001;
-  options.check = [&] { return well ? absl::OkStatus() : absl::UnavailableError("no answer"); };
-  std::atomic<int> turns{0};
-  options.checked = [&](const absl::Status& status, bool changed) {
-    if (changed) {
-      EXPECT_EQ(status.ok(), turns % 2 == 1) << "it reports each turn once";
-      ++turns;
-    }
-    if (status.ok()) return;
-    EXPECT_THAT(status, StatusIs(StatusCode::kUnavailable, "no answer"));
-    ++failures;
-  };
-  const SelfCheck check(options);
-  while (failures < 3) std::this_thread::yield();
-  EXPECT_FALSE(check.healthy());
-  EXPECT_FALSE(check.passes());
-  EXPECT_EQ(turns, 1);
-  well = true;
-  while (turns < 2) std::this_thread::yield();
-  EXPECT_TRUE(check.healthy());
-  EXPECT_TRUE(check.passes());
 }
 
 }  // namespace
