@@ -18,8 +18,6 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "model/base/file.h"
-#include "model/base/nearest.h"
-#include "model/base/text.h"
 
 namespace duet::server::config {
 namespace {
@@ -92,16 +90,12 @@ void ReadFile(const std::string& path, CommandLine* command_line) {
 
 void ReadVariables(const Environment& environment, CommandLine* command_line) {
   const std::vector<Setting> settings = AllSettings();
-  std::vector<std::string> known = {kConfigVariable};
-  for (const Setting& setting : settings) known.push_back(setting.variable());
   for (const auto& [name, value] : environment) {
     const auto setting =
         std::find_if(settings.begin(), settings.end(),
                      [&name = name](const Setting& one) { return one.variable() == name; });
     if (setting == settings.end()) {
-      if (name == kConfigVariable) continue;
-      command_line->errors.push_back(
-          absl::StrCat(name, ": sets nothing", base::DidYouMean(name, known)));
+      if (name != kConfigVariable) command_line->errors.push_back(name + ": sets nothing");
       continue;
     }
     std::vector<std::string> values = {value};
@@ -144,23 +138,6 @@ void AddFlags(CLI::App& app) {
   }
 }
 
-// Describes the words that CLI11 left over. An unknown flag's value may be among them, so the error
-// names the flag.
-absl::Status NotAFlag(const CLI::App& app, const std::vector<std::string>& words) {
-  std::vector<std::string> known;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& flag : option->get_lnames()) known.push_back("--" + flag);
-  }
-  for (const std::string& word : words) {
-    if (!absl::StartsWith(word, "-")) continue;
-    const std::string flag = word.substr(0, word.find('='));
-    return absl::InvalidArgumentError(
-        absl::StrCat(flag, ": there is no such flag", base::DidYouMean(flag, known)));
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat("expected flags only, got ", base::Quoted(words[0])));
-}
-
 // Parses the command line; `print` receives the text of --help or --version.
 absl::Status ParseFlags(CLI::App& app, int argc, const char* const* argv,
                         std::optional<std::string>* print) {
@@ -171,8 +148,6 @@ absl::Status ParseFlags(CLI::App& app, int argc, const char* const* argv,
     app.exit(wanted, text, text);
     // CLI11 marks the negative name of a switch.
     *print = absl::StrReplaceAll(text.str(), {{"{false}", ""}});
-  } catch (const CLI::ExtrasError&) {
-    return NotAFlag(app, app.remaining());
   } catch (const std::exception& error) {
     return absl::InvalidArgumentError(error.what());
   }

@@ -7,7 +7,6 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/base/nearest.h"
 #include "model/base/text.h"
 
 namespace duet::server::registry {
@@ -311,9 +310,8 @@ std::vector<std::string> ModelManager::UnknownNames() const {
   for (std::size_t i = 0; i < labels_.size(); ++i) {
     const std::string& model = labels_[i].model;
     if (std::find(names.begin(), names.end(), model) != names.end()) continue;
-    unknown.push_back(absl::StrCat("version_labels[", i,
-                                   "].model: expected one of: ", absl::StrJoin(names, ", "),
-                                   ", got ", base::Quoted(model), base::DidYouMean(model, names)));
+    unknown.push_back(absl::StrCat("version_labels[", i, "].model: expected one of: ",
+                                   absl::StrJoin(names, ", "), ", got ", base::Quoted(model)));
   }
   return unknown;
 }
