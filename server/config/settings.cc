@@ -56,16 +56,6 @@ bool ParseSwitch(const std::string& text, bool* value) {
   return *value || absl::EqualsIgnoreCase(text, "off") || absl::SimpleAtob(text, value);
 }
 
-// "1 to 100000" with the numbers of the field's type.
-template <typename Number>
-std::string RangeText(const v1::SettingRange& range) {
-  const Number max =
-      range.has_max() ? static_cast<Number>(range.max()) : std::numeric_limits<Number>::max();
-  const std::string min =
-      range.min_text().empty() ? absl::StrCat(static_cast<Number>(range.min())) : range.min_text();
-  return absl::StrCat(range.or_zero() ? "0, or " : "", min, " to ", max);
-}
-
 }  // namespace
 
 std::vector<Choice> ChoicesOf(const google::protobuf::EnumDescriptor& type) {
@@ -103,18 +93,6 @@ std::string Setting::default_text() const {
   if (value.empty()) return options().default_text();
   if (field_->cpp_type() != Field::CPPTYPE_BOOL) return value;
   return value == "true" ? "on" : "off";
-}
-
-std::string Setting::range_text() const {
-  if (!options().has_range()) return "";
-  switch (field_->cpp_type()) {
-    case Field::CPPTYPE_UINT32:
-      return RangeText<uint32_t>(options().range());
-    case Field::CPPTYPE_UINT64:
-      return RangeText<uint64_t>(options().range());
-    default:
-      return RangeText<double>(options().range());
-  }
 }
 
 std::string Setting::help() const {

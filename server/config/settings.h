@@ -50,8 +50,6 @@ class Setting {
   // The value that a flag would set, such as "128" or "on", or a text. Empty if there is no
   // default.
   std::string default_text() const;
-  // Such as "1 to 100000". Empty if any value of the type is valid.
-  std::string range_text() const;
   // One paragraph, with the default.
   std::string help() const;
 

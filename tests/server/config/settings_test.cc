@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -71,6 +72,28 @@ CommandLine Parse(const std::vector<std::string>& arguments, const Environment& 
   return ParseCommandLine(static_cast<int>(argv.size()), argv.data(), environment);
 }
 
+template <typename Number>
+std::string RangeText(const v1::SettingRange& range) {
+  const Number max =
+      range.has_max() ? static_cast<Number>(range.max()) : std::numeric_limits<Number>::max();
+  const std::string min =
+      range.min_text().empty() ? absl::StrCat(static_cast<Number>(range.min())) : range.min_text();
+  return absl::StrCat(range.or_zero() ? "0, or " : "", min, " to ", max);
+}
+
+// Such as "1 to 100000", with the numbers of the field's type. Empty if any value is valid.
+std::string RangeText(const Setting& setting) {
+  if (!setting.options().has_range()) return "";
+  switch (setting.field().cpp_type()) {
+    case Setting::Field::CPPTYPE_UINT32:
+      return RangeText<uint32_t>(setting.options().range());
+    case Setting::Field::CPPTYPE_UINT64:
+      return RangeText<uint64_t>(setting.options().range());
+    default:
+      return RangeText<double>(setting.options().range());
+  }
+}
+
 TEST(EverySettingTest, HasHelpAUnitAndANumberARange) {
   std::set<std::string> flags;
   for (const Setting& setting : AllSettings()) {
@@ -81,7 +104,7 @@ TEST(EverySettingTest, HasHelpAUnitAndANumberARange) {
     const bool is_number = type == Setting::Field::CPPTYPE_UINT32 ||
                            type == Setting::Field::CPPTYPE_UINT64 ||
                            type == Setting::Field::CPPTYPE_DOUBLE;
-    EXPECT_EQ(!setting.range_text().empty(), is_number) << setting.name();
+    EXPECT_EQ(!RangeText(setting).empty(), is_number) << setting.name();
     EXPECT_TRUE(flags.insert(setting.flag()).second) << setting.name();
   }
 }
@@ -119,7 +142,7 @@ TEST(EverySettingTest, ShowsInHelpWithItsDefault) {
 
 TEST(EverySettingTest, NumberOutOfRangeIsRejectedByName) {
   for (const Setting& setting : AllSettings()) {
-    if (setting.range_text().empty() || !setting.options().range().has_max()) continue;
+    if (RangeText(setting).empty() || !setting.options().range().has_max()) continue;
     const double above = setting.options().range().max() + 1;
     const CommandLine line =
         Parse({absl::StrCat("--", setting.flag(), "=", static_cast<uint64_t>(above))}, {});
@@ -130,11 +153,10 @@ TEST(EverySettingTest, NumberOutOfRangeIsRejectedByName) {
 }
 
 TEST(SettingTest, RangeNamesTheTypesLargestNumberAndAnExtraZero) {
-  EXPECT_EQ(Setting(v1::ServerConfig::kMemoryLimitBytesFieldNumber).range_text(),
+  EXPECT_EQ(RangeText(Setting(v1::ServerConfig::kMemoryLimitBytesFieldNumber)),
             "67108864 to 18446744073709551615");
-  EXPECT_EQ(Setting(v1::ServerConfig::kWatchdogSecondsFieldNumber).range_text(),
-            "0, or 1 to 86400");
-  EXPECT_EQ(Setting(v1::ServerConfig::kMaxHeldBytesFieldNumber).range_text(),
+  EXPECT_EQ(RangeText(Setting(v1::ServerConfig::kWatchdogSecondsFieldNumber)), "0, or 1 to 86400");
+  EXPECT_EQ(RangeText(Setting(v1::ServerConfig::kMaxHeldBytesFieldNumber)),
             "max-request-bytes to 1099511627776");
 }
 
@@ -171,7 +193,7 @@ std::string Document() {
     const std::string quote = is_value ? "`" : "";
     absl::StrAppend(&text, "| `--", setting.flag(), "` | ", Cell(setting.unit()), " | ", quote,
                     is_value ? setting.default_text() : Cell(setting.default_text()), quote, " | ",
-                    setting.range_text(), " | ", Cell(setting.options().help()), " |\n");
+                    RangeText(setting), " | ", Cell(setting.options().help()), " |\n");
   }
   return text;
 }
