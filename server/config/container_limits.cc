@@ -9,24 +9,17 @@
 #include <optional>
 #include <sstream>
 #include <thread>
-#include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 
 namespace duet::server::config {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-// The folders in which the kernel shows the limits that apply to this process: those of its own
-// cgroup and of each ancestor, because every one of them limits it. A folder may not exist: inside
-// a container the process's own cgroup appears as the top, whatever path the kernel reports.
-struct CgroupFolders {
-  std::vector<std::filesystem::path> version_1;  // of the controller's own hierarchy
-  std::vector<std::filesystem::path> version_2;
-};
 
 // The first line of a file; empty if the file cannot be read.
 std::string FirstLine(const fs::path& path) {
@@ -36,46 +29,22 @@ std::string FirstLine(const fs::path& path) {
   return line;
 }
 
-// A line of /proc/self/cgroup, "<number>:<controllers>:/<path>".
-struct CgroupLine {
-  bool version_2 = false;       // no controllers: the only hierarchy of version 2
-  bool has_controller = false;  // version 1's hierarchy of the controller
-  fs::path path;                // without the leading "/"
-};
-
-CgroupLine ParseCgroupLine(const std::string& line, const std::string& controller) {
-  const std::size_t first = line.find(':');
-  const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
-  if (second == std::string::npos || line.compare(second, 2, ":/") != 0) return {};
-  const std::string controllers = line.substr(first + 1, second - first - 1);
-  // Enclosed in commas, because "cpuacct" and "cpuset" are not "cpu".
-  const bool has_controller =
-      ("," + controllers + ",").find("," + controller + ",") != std::string::npos;
-  return {controllers.empty(), has_controller, line.substr(second + 2)};
-}
-
-// The cgroup's folder below `top` and those of its ancestors.
-std::vector<fs::path> WithAncestors(const fs::path& top, fs::path cgroup) {
+// The folders in which the kernel shows the limits that apply to this process: those of its own
+// cgroup and of each ancestor, because every one of them limits it. A folder may not exist: inside
+// a container the process's own cgroup appears as the top, whatever path the kernel reports.
+std::vector<fs::path> FindCgroups(const fs::path& system_root) {
+  constexpr absl::string_view kVersion2 = "0::/";
+  fs::path cgroup;
+  std::ifstream file(system_root / "proc/self/cgroup");
+  for (std::string line; std::getline(file, line);) {
+    if (absl::StartsWith(line, kVersion2)) cgroup = line.substr(kVersion2.size());
+  }
   std::vector<fs::path> folders;
   while (true) {
-    folders.push_back(top / cgroup);
+    folders.push_back(system_root / "sys/fs/cgroup" / cgroup);
     if (cgroup.empty()) return folders;
     cgroup = cgroup.parent_path();
   }
-}
-
-// Finds the folders of a controller, such as "cpu" or "memory". `system_root` is "/" except in
-// tests.
-CgroupFolders FindCgroups(const fs::path& system_root, const std::string& controller) {
-  fs::path version_1, version_2;
-  std::ifstream file(system_root / "proc/self/cgroup");
-  for (std::string line; std::getline(file, line);) {
-    CgroupLine cgroup = ParseCgroupLine(line, controller);
-    if (cgroup.version_2) version_2 = cgroup.path;
-    if (cgroup.has_controller) version_1 = std::move(cgroup.path);
-  }
-  const fs::path top = system_root / "sys/fs/cgroup";
-  return {WithAncestors(top / controller, version_1), WithAncestors(top, version_2)};
 }
 
 // Returns the cores that a cgroup's cpu.max ("<quota> <period>" in microseconds, or "max <period>")
@@ -118,28 +87,16 @@ std::uint64_t MemoryOfMachine(const fs::path& system_root) {
 
 int AvailableCores(const fs::path& system_root) {
   double cores = AffinityCores();
-  const CgroupFolders cgroups = FindCgroups(system_root, "cpu");
-  for (const fs::path& cgroup : cgroups.version_2) {
+  for (const fs::path& cgroup : FindCgroups(system_root)) {
     cores = std::min(cores, ParseCpuMax(FirstLine(cgroup / "cpu.max")).value_or(cores));
-  }
-  for (const fs::path& cgroup : cgroups.version_1) {
-    // A quota of -1 means no limit.
-    const std::string limit =
-        FirstLine(cgroup / "cpu.cfs_quota_us") + " " + FirstLine(cgroup / "cpu.cfs_period_us");
-    cores = std::min(cores, ParseCpuMax(limit).value_or(cores));
   }
   return std::max(1, static_cast<int>(std::floor(cores)));
 }
 
 std::uint64_t AvailableMemory(const fs::path& system_root) {
   std::uint64_t limit = MemoryOfMachine(system_root);
-  const CgroupFolders cgroups = FindCgroups(system_root, "memory");
-  for (const fs::path& cgroup : cgroups.version_2) {
+  for (const fs::path& cgroup : FindCgroups(system_root)) {
     limit = std::min({limit, LimitIn(cgroup / "memory.max"), LimitIn(cgroup / "memory.high")});
-  }
-  // Version 1 writes its largest number, which exceeds every machine's memory, for no limit.
-  for (const fs::path& cgroup : cgroups.version_1) {
-    limit = std::min(limit, LimitIn(cgroup / "memory.limit_in_bytes"));
   }
   return limit;
 }

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <string>
 
-#include "absl/strings/str_cat.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::config {
@@ -111,26 +110,12 @@ TEST(ContainerLimitsTest, SoftMemoryLimitCounts) {
   }
 }
 
-TEST(ContainerLimitsTest, ReadsVersionOne) {
+TEST(ContainerLimitsTest, TopCountsInsideAContainer) {
   FakeSystem system;
-  for (const char* controllers : {"cpu", "cpu,cpuacct", "cpuacct,cpu"}) {
-    system.Write("proc/self/cgroup", absl::StrCat("12:cpuset:/elsewhere\n4:", controllers,
-                                                  ":/docker/box\n5:memory:/docker/box\n0::/\n"));
-    system.SetLimit("cpu/docker/cpu.cfs_quota_us", "-1\n");
-    system.SetLimit("cpu/docker/box/cpu.cfs_quota_us", "150000\n");
-    system.SetLimit("cpu/docker/box/cpu.cfs_period_us", "100000\n");
-    EXPECT_EQ(system.Cores(), 1) << controllers;
-  }
-  system.SetLimit("memory/docker/box/memory.limit_in_bytes", "419430400\n");
+  system.SetCgroup("/a/path/outside");
+  system.SetLimit("memory.max", "419430400\n");
   EXPECT_EQ(system.Memory(), 400 * kMebibyte);
-  system.SetLimit("memory/docker/box/memory.limit_in_bytes", "9223372036854771712\n");
-  EXPECT_EQ(system.Memory(), 4096 * kMebibyte);
-  // Inside a container its own group is the top.
-  system.Write("proc/self/cgroup", "5:cpuacct,memory:/a/path/outside\n");
-  system.SetLimit("memory/memory.limit_in_bytes", "419430400\n");
-  EXPECT_EQ(system.Memory(), 400 * kMebibyte);
-  system.SetLimit("cpu/cpu.cfs_quota_us", "100000\n");
-  system.SetLimit("cpu/cpu.cfs_period_us", "100000\n");
+  system.SetLimit("cpu.max", "100000 100000\n");
   EXPECT_EQ(system.Cores(), 1);
 }
 
