@@ -2,14 +2,13 @@
 
 #include <prometheus/text_serializer.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <unistd.h>
 
-#include <cstddef>
-#include <ctime>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <system_error>
 
 #include "absl/status/status.h"
@@ -34,73 +33,49 @@ prometheus::MetricFamily Counter(const std::string& name, const std::string& hel
   return {name, help, prometheus::MetricType::Counter, {metric}};
 }
 
-// Returns the fields of /proc/self/stat after the program's name, which may contain any character.
-// The first is the state, field 3 in proc(5).
-std::vector<std::string> StatFields() {
-  std::ifstream file("/proc/self/stat");
-  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  const std::size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return {};
-  std::istringstream words(text.substr(name_end + 1));
-  return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
+// The virtual and the resident memory of this process in bytes; 0 if they cannot be read.
+std::pair<std::uint64_t, std::uint64_t> ReadMemory() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t pages = 0, resident = 0;
+  if (!(file >> pages >> resident)) return {0, 0};
+  const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return {pages * page, resident * page};
 }
 
-// The boot time in seconds since 1970. Measured once, so that it is the same in every scrape.
-double BootTime() {
-  static const double boot_time = [] {
-    timespec now = {}, uptime = {};
-    clock_gettime(CLOCK_REALTIME, &now);
-    clock_gettime(CLOCK_BOOTTIME, &uptime);
-    return static_cast<double>(now.tv_sec - uptime.tv_sec);
-  }();
-  return boot_time;
+double CountEntries(const char* folder) {
+  std::error_code error;
+  const std::filesystem::directory_iterator entries(folder, error);
+  return error ? 0 : static_cast<double>(std::distance(begin(entries), end(entries)));
 }
 
-void AddStat(Families& families) {
-  // Field numbers of proc(5); `fields` begins with number 3.
-  constexpr std::size_t kUserTime = 14, kSystemTime = 15, kThreads = 20, kStart = 22,
-                        kVirtualMemory = 23, kResidentPages = 24;
-  const std::vector<std::string> fields = StatFields();
-  if (fields.size() <= kResidentPages - 3) return;
-  const auto field = [&fields](std::size_t number) { return std::stod(fields[number - 3]); };
-  const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
+double Seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+// The standard process metrics of Prometheus clients.
+void AddProcessMetrics(double start_seconds, Families& families) {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
   families.push_back(Counter("process_cpu_seconds_total",
                              "Total user and system CPU time spent in seconds.",
-                             (field(kUserTime) + field(kSystemTime)) / ticks));
-  families.push_back(Gauge("process_threads", "Number of threads.", field(kThreads)));
+                             Seconds(usage.ru_utime) + Seconds(usage.ru_stime)));
+  families.push_back(
+      Gauge("process_threads", "Number of threads.", CountEntries("/proc/self/task")));
+  const auto [virtual_bytes, resident_bytes] = ReadMemory();
   families.push_back(Gauge("process_virtual_memory_bytes", "Virtual memory size in bytes.",
-                           field(kVirtualMemory)));
+                           static_cast<double>(virtual_bytes)));
   families.push_back(Gauge("process_resident_memory_bytes", "Resident memory size in bytes.",
-                           field(kResidentPages) * static_cast<double>(sysconf(_SC_PAGESIZE))));
+                           static_cast<double>(resident_bytes)));
   families.push_back(Gauge("process_start_time_seconds",
                            "Start time of the process since unix epoch in seconds.",
-                           BootTime() + field(kStart) / ticks));
-}
-
-void AddDescriptors(Families& families) {
-  std::error_code error;
-  const std::filesystem::directory_iterator open("/proc/self/fd", error);
-  if (!error) {
-    // One of them belongs to this iterator.
-    families.push_back(Gauge("process_open_fds", "Number of open file descriptors.",
-                             static_cast<double>(std::distance(begin(open), end(open)) - 1)));
-  }
+                           start_seconds));
+  // One of them belongs to the count, which fails if none is left.
+  families.push_back(Gauge("process_open_fds", "Number of open file descriptors.",
+                           std::max(0.0, CountEntries("/proc/self/fd") - 1)));
   rlimit limit = {};
-  if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
-    families.push_back(Gauge("process_max_fds", "Maximum number of open file descriptors.",
-                             static_cast<double>(limit.rlim_cur)));
-  }
-}
-
-// Reads the standard process metrics of Prometheus clients from /proc:
-//   process_cpu_seconds_total, process_start_time_seconds, process_threads,
-//   process_resident_memory_bytes, process_virtual_memory_bytes, process_open_fds, process_max_fds
-// Metrics that cannot be read are omitted.
-Families ReadProcessMetrics() {
-  Families families;
-  AddStat(families);
-  AddDescriptors(families);
-  return families;
+  getrlimit(RLIMIT_NOFILE, &limit);
+  families.push_back(Gauge("process_max_fds", "Maximum number of open file descriptors.",
+                           static_cast<double>(limit.rlim_cur)));
 }
 
 using prometheus::Labels;
@@ -144,12 +119,7 @@ Labels PriorityLabels(batching::Priority priority) {
 
 }  // namespace
 
-std::uint64_t ResidentBytes() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t pages = 0, resident = 0;
-  if (!(file >> pages >> resident)) return 0;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
+std::uint64_t ResidentBytes() { return ReadMemory().second; }
 
 ServerMetrics::Counters& ServerMetrics::NewCounters(const char* name, const char* help) {
   return prometheus::BuildCounter().Name(name).Help(help).Register(registry_);
@@ -280,9 +250,7 @@ std::string ServerMetrics::Render() {
     families.push_back(Gauge("duet_tls_certificate_expiry_timestamp_seconds",
                              "When the server's certificate expires.", read_.certificate_end()));
   }
-  for (prometheus::MetricFamily& family : ReadProcessMetrics()) {
-    families.push_back(std::move(family));
-  }
+  AddProcessMetrics(start_seconds_, families);
   return prometheus::TextSerializer().Serialize(families);
 }
 

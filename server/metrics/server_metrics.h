@@ -8,6 +8,7 @@
 #include <prometheus/registry.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -150,6 +151,9 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
                 "1 if the certificates or access file on disk are in use, 0 "
                 "if they were rejected and the previous ones are.");
   std::atomic<std::uint64_t> batches_{0};
+  // The process starts not much earlier.
+  const double start_seconds_ =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   ReadValues read_;
   common::Mutex render_mutex_;  // one scrape at a time updates the values that it reads
 };
