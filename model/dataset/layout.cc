@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
@@ -125,17 +126,9 @@ bool ReadLevel(base::ObjectReader* document, const motion::Skeleton& skeleton) {
 
 constexpr double kK3hiFrameRateHz = 30;
 
-struct ClassRow {
-  const char* name;
-  const char* folder;
-  bool symmetric;
-  bool handed;
-  bool touches;
-};
-
 // Both data sets share skeleton and units.
 DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
-                           const std::vector<ClassRow>& rows) {
+                           std::vector<ClassLayout> classes) {
   DatasetLayout layout;
   layout.name = name;
   layout.frame_rate_hz = frame_rate_hz;
@@ -147,11 +140,8 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
   const std::vector<int> feet = {layout.skeleton.feet->left, layout.skeleton.feet->right};
   const std::vector<int> hands = {layout.skeleton.Find("left_hand"),
                                   layout.skeleton.Find("right_hand")};
-  for (const ClassRow& row : rows) {
-    const bool kick = std::string_view(row.name) == "kick";
-    layout.classes.push_back(
-        {row.name, row.folder, row.symmetric, row.handed, row.touches, kick ? feet : hands});
-  }
+  for (ClassLayout& one : classes) one.effectors = one.name == "kick" ? feet : hands;
+  layout.classes = std::move(classes);
   return layout;
 }
 
@@ -159,12 +149,12 @@ DatasetLayout KinectLayout(const std::string& name, double frame_rate_hz,
 
 DatasetLayout SbuLayout() {
   return KinectLayout("sbu", motion::kSbuFrameRateHz,
-                      {{"kick", "03", false, false, false},
-                       {"push", "04", false, false, false},
-                       {"shake_hands", "05", true, true, false},
-                       {"hug", "06", true, false, true},
-                       {"exchange_object", "07", true, true, false},
-                       {"punch", "08", false, false, false}});
+                      {{"kick", "03", false, false, false, {}},
+                       {"push", "04", false, false, false, {}},
+                       {"shake_hands", "05", true, true, false, {}},
+                       {"hug", "06", true, false, true, {}},
+                       {"exchange_object", "07", true, true, false, {}},
+                       {"punch", "08", false, false, false, {}}});
 }
 
 bool IsSbuSet(std::string_view name) {
@@ -175,14 +165,14 @@ bool IsSbuSet(std::string_view name) {
 
 DatasetLayout K3hiLayout() {
   return KinectLayout("k3hi", kK3hiFrameRateHz,
-                      {{"approach", "approaching", false, false, false},
-                       {"depart", "departing", false, false, false},
-                       {"exchange_object", "exchanging", true, true, false},
-                       {"kick", "kicking", false, false, false},
-                       {"point", "pointing", false, true, false},
-                       {"punch", "punching", false, false, false},
-                       {"push", "pushing", false, false, false},
-                       {"shake_hands", "shaking", true, true, false}});
+                      {{"approach", "approaching", false, false, false, {}},
+                       {"depart", "departing", false, false, false, {}},
+                       {"exchange_object", "exchanging", true, true, false, {}},
+                       {"kick", "kicking", false, false, false, {}},
+                       {"point", "pointing", false, true, false, {}},
+                       {"punch", "punching", false, false, false, {}},
+                       {"push", "pushing", false, false, false, {}},
+                       {"shake_hands", "shaking", true, true, false, {}}});
 }
 
 absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {

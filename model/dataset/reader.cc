@@ -59,40 +59,27 @@ absl::Status Below(const fs::path& folder, const absl::Status& status) {
   return absl::InvalidArgumentError(absl::StrCat((folder / "").string(), status.message()));
 }
 
-int FindFolder(const DatasetLayout& layout, const std::string& folder) {
-  for (size_t i = 0; i < layout.classes.size(); ++i) {
-    if (layout.classes[i].folder == folder) return static_cast<int>(i);
-  }
-  return -1;
-}
-
-// <set>/<class>/<sequence>/skeleton_pos.txt. Ignores other classes (approaching, departing).
-absl::Status FindSbuSet(const fs::path& folder, const DatasetLayout& layout, const std::string& set,
-                        std::vector<FoundFile>* found) {
-  DUET_TRY(const std::vector<std::string> classes, ListFolder(folder / set));
-  for (const std::string& one : classes) {
-    const int interaction_class = FindFolder(layout, one);
-    if (interaction_class < 0) continue;
-    DUET_TRY(const std::vector<std::string> sequences, ListFolder(folder / set / one));
-    for (const std::string& sequence : sequences) {
-      if (!IsFolder(folder / set / one / sequence)) continue;
-      found->push_back({absl::StrCat(set, "/", one, "/", sequence, "/skeleton_pos.txt"),
-                        set,
-                        interaction_class,
-                        {set.substr(0, 3), set.substr(3, 3)},
-                        {}});
-    }
-  }
-  return absl::OkStatus();
-}
-
+// <set>/<class>/<sequence>/skeleton_pos.txt in each set of `names`. Ignores other classes
+// (approaching, departing).
 absl::StatusOr<std::vector<FoundFile>> FindSbuFiles(const fs::path& folder,
                                                     const DatasetLayout& layout,
                                                     const std::vector<std::string>& names) {
   std::vector<FoundFile> found;
-  for (const std::string& name : names) {
-    if (!IsSbuSet(name) || !IsFolder(folder / name)) continue;
-    DUET_RETURN_IF_ERROR(FindSbuSet(folder, layout, name, &found));
+  for (const std::string& set : names) {
+    if (!IsSbuSet(set) || !IsFolder(folder / set)) continue;
+    for (size_t i = 0; i < layout.classes.size(); ++i) {
+      const std::string in_set = absl::StrCat(set, "/", layout.classes[i].folder);
+      if (!IsFolder(folder / in_set)) continue;
+      DUET_TRY(const std::vector<std::string> sequences, ListFolder(folder / in_set));
+      for (const std::string& sequence : sequences) {
+        if (!IsFolder(folder / in_set / sequence)) continue;
+        found.push_back({absl::StrCat(in_set, "/", sequence, "/skeleton_pos.txt"),
+                         set,
+                         static_cast<int>(i),
+                         {set.substr(0, 3), set.substr(3, 3)},
+                         {}});
+      }
+    }
   }
   return found;
 }
