@@ -19,17 +19,13 @@ struct IndexEntry {
   LeaderSide leader_side = LeaderSide::kUnknown;
   std::vector<std::string> subjects;  // from the column of that name, if there is one
   bool guessed = false;               // its column leader_source exists and begins with "guess"
-  std::string group;                  // from the column of that name, if there is one
   int line = 0;                       // for messages
 };
 
-// Whether a text begins like an index.tsv: a header with the required columns.
-bool LooksLikeIndex(absl::string_view text);
-
-// Parses index.tsv: a header with the names of the columns, then one file per line. The columns
-// `path` and `leader_side` (left, right, unknown) are required; `subjects` (names separated by
-// commas), `leader_source` and `group` are optional; other columns are ignored. Returns the entries
-// by path. Errors: INVALID_ARGUMENT naming the line, the expected value and the actual one.
+// Parses index.tsv, a table (table.h) of one file per line. The columns `path` and `leader_side`
+// (left, right, unknown) are required; `subjects` (names separated by commas) and `leader_source`
+// are optional; other columns are ignored. Returns the entries by path. Errors: INVALID_ARGUMENT
+// naming the line, the expected value and the actual one.
 absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view text);
 
 // The largest distance of any effector from its position in the first frame, relative to the root

@@ -126,9 +126,9 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& fold
   // With a misspelt path, the motion rule would silently choose the leader of that file.
   for (const auto& [path, entry] : *index) {
     if (Exists(folder / path)) continue;
-    return absl::InvalidArgumentError(absl::StrCat((folder / "index.tsv").string(), ": line ",
-                                                   entry.line, ": path: expected a file below ",
-                                                   folder.string(), ", got ", base::Quoted(path)));
+    return base::ErrorAt((folder / "index.tsv").string(), entry.line,
+                         absl::StrCat("path: expected a file below ", folder.string(), ", got ",
+                                      base::Quoted(path)));
   }
   return index;
 }

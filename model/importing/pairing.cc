@@ -10,9 +10,10 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/status_macros.h"
 #include "model/base/text.h"
+#include "model/dataset/table.h"
 #include "model/importing/steps.h"
 
 namespace duet::importing {
@@ -182,52 +183,27 @@ Pairing PairByName(const std::vector<std::string>& files) {
 
 absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view source,
                                     const std::vector<std::string>& files) {
-  base::LineReader lines(base::SkipByteOrderMark(table));
-  absl::string_view line;
-  std::map<std::string, std::size_t> columns;
-  if (lines.Next(&line)) {
-    const std::vector<std::string> names = absl::StrSplit(line, '\t');
-    for (std::size_t i = 0; i < names.size(); ++i) columns.emplace(names[i], i);
-  }
-  for (const char* column : {"leader", "follower", "label"}) {
-    if (columns.count(column) > 0) continue;
-    return base::ErrorAt(source, 1,
-                         absl::StrCat("header: expected tab-separated names with leader, follower "
-                                      "and label, got no ",
-                                      column));
-  }
+  DUET_TRY(const std::vector<dataset::TableRow> rows,
+           dataset::ReadTable(table, source, {"leader", "follower", "label"}));
   const std::set<std::string> known(files.begin(), files.end());
   Pairing pairing;
-  while (lines.Next(&line)) {
-    if (absl::StripAsciiWhitespace(line).empty()) continue;
-    const std::vector<std::string> cells = absl::StrSplit(line, '\t');
-    if (cells.size() != columns.size()) {
-      return base::ErrorAt(
-          source, lines.number(),
-          absl::StrCat("columns: expected ", columns.size(), ", got ", cells.size()));
-    }
+  for (const dataset::TableRow& row : rows) {
     PairFiles pair;
-    pair.first = cells[columns["leader"]];
-    pair.second = cells[columns["follower"]].empty() ? pair.first : cells[columns["follower"]];
-    pair.label = ToLabel(cells[columns["label"]]);
+    pair.first = row["leader"];
+    pair.second = row["follower"].empty() ? pair.first : row["follower"];
     pair.leader_source = "table";
     NamePair(ParseName(pair.first), &pair);
-    pair.label = ToLabel(cells[columns["label"]]);
+    pair.label = ToLabel(row["label"]);
     if (pair.label.empty()) {
-      return base::ErrorAt(source, lines.number(), "label: expected the name of a class, got none");
+      return base::ErrorAt(source, row.line, "label: expected the name of a class, got none");
     }
-    if (columns.count("subjects") > 0) {
-      for (absl::string_view subject : absl::StrSplit(cells[columns["subjects"]], ',')) {
-        subject = absl::StripAsciiWhitespace(subject);
-        if (!subject.empty()) pair.subjects.emplace_back(subject);
-      }
-    }
+    pair.subjects = row.Names("subjects");
     const std::string* missing = known.count(pair.first) == 0    ? &pair.first
                                  : known.count(pair.second) == 0 ? &pair.second
                                                                  : nullptr;
     if (missing != nullptr) {
       pairing.refused.push_back({*missing, absl::StrCat("expected a motion file, as ", source, ":",
-                                                        lines.number(), " names it, got none")});
+                                                        row.line, " names it, got none")});
       continue;
     }
     pairing.pairs.push_back(std::move(pair));

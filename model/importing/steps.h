@@ -56,10 +56,9 @@ struct Pairing {
 // a file in no folder, without the number at its end.
 Pairing PairByName(const std::vector<std::string>& files);
 
-// Pairs files by a tab-separated table: a header, then one pair per line. The columns `leader`,
-// `follower` (empty if the leader's file holds both) and `label` are required, `subjects` (names
-// separated by commas) is optional, and others are ignored. A pair with a file not in `files` is
-// rejected.
+// Pairs files by a table (dataset/table.h) of one pair per line. The columns `leader`, `follower`
+// (empty if the leader's file holds both) and `label` are required, `subjects` (names separated by
+// commas) is optional, and others are ignored. A pair with a file not in `files` is rejected.
 // Errors: INVALID_ARGUMENT "source:line: ...: expected ..., got ...".
 absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view source,
                                     const std::vector<std::string>& files);

@@ -29,16 +29,14 @@ TEST(LeaderIndexTest, NamesTheLineThatIsWrong) {
     EXPECT_EQ(index.status().code(), absl::StatusCode::kInvalidArgument);
     return std::string(index.status().message());
   };
-  EXPECT_THAT(message(""), HasSubstr("line 1"));
-  EXPECT_THAT(
-      message("path\tside\n"),
-      HasSubstr("line 1: expected a header of tab-separated names with path and leader_side"));
+  EXPECT_THAT(message(""), HasSubstr("index.tsv:1: header: expected"));
+  EXPECT_THAT(message("path\tside\n"), HasSubstr("path, leader_side, got no leader_side"));
   EXPECT_THAT(message("path\tleader_side\na\tleft\nb\n"),
-              HasSubstr("line 3: expected 2 columns, got 1"));
+              HasSubstr("index.tsv:3: columns: expected 2, got 1"));
   EXPECT_THAT(message("path\tleader_side\na\tLeft\n"),
-              HasSubstr("line 2: expected leader_side left, right or unknown, got \"Left\""));
+              HasSubstr(":2: leader_side: expected left, right or unknown, got \"Left\""));
   EXPECT_THAT(message("path\tleader_side\na\tleft\na\tleft\n"),
-              HasSubstr("line 3: expected each path once, got \"a\" again"));
+              HasSubstr(":3: path: expected each once, got \"a\" again"));
 }
 
 // Two joints: a root that walks from `start` on, and a hand.

@@ -189,7 +189,7 @@ TEST(ReadDatasetTest, RejectsAnIndexThatNamesAnAbsentFile) {
   folder.Write("s01s02/03/001/skeleton_pos.txt", StillCapture(2));
   folder.Write("index.tsv", "path\tleader_side\ns01s02/03/01/skeleton_pos.txt\tleft\n");
   EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
-              AllOf(HasSubstr("index.tsv: line 2"), HasSubstr("path: expected a file below")));
+              AllOf(HasSubstr("index.tsv:2: "), HasSubstr("path: expected a file below")));
 }
 
 TEST(ReadDatasetTest, RejectsAFolderThatIsNoDataSet) {

@@ -41,12 +41,12 @@ TEST_P(ParseTimeLinesErrorTest, NamesLineColumnExpectedAndActual) {
 
 INSTANTIATE_TEST_SUITE_P(
     , ParseTimeLinesErrorTest,
-    testing::Values(BadLine{"", "labels.tsv: line 1: expected the header"},
-                    BadLine{"path\tclass\n", "line 1: expected the header"},
+    testing::Values(BadLine{"", "labels.tsv:1: header: expected"},
+                    BadLine{"path\tclass\n", "got no from_seconds"},
                     BadLine{std::string(kHeader) + "a.txt\tturn\t1\n",
-                            "line 2: expected 4 columns, got 3"},
+                            "labels.tsv:2: columns: expected 4, got 3"},
                     BadLine{std::string(kHeader) + "a.txt\tdip\t1\t2\n",
-                            "line 2: class: expected one of basic, turn, got \"dip\""},
+                            ":2: class: expected one of basic, turn, got \"dip\""},
                     BadLine{std::string(kHeader) + "a.txt\tturn\tsoon\t2\n",
                             "from_seconds: expected seconds from 0 to 1e+06, got \"soon\""},
                     BadLine{std::string(kHeader) + "a.txt\tturn\tnan\t2\n", "from_seconds"},

@@ -91,9 +91,8 @@ TEST(PairByTableTest, NamesLineAndColumn) {
   EXPECT_THAT(refusal(""),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        HasSubstr("t:1: header: expected tab-separated names with leader")));
-  EXPECT_THAT(
-      refusal("leader\tfollower\n"),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("follower and label, got no label")));
+  EXPECT_THAT(refusal("leader\tfollower\n"), StatusIs(absl::StatusCode::kInvalidArgument,
+                                                      HasSubstr("follower, label, got no label")));
   EXPECT_THAT(
       refusal("leader\tfollower\tlabel\nx\tx\n"),
       StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("t:2: columns: expected 3, got 2")));
