@@ -38,31 +38,30 @@ bool IsDigit(char c) { return absl::ascii_isdigit(static_cast<unsigned char>(c))
 // A file name taken apart: "kick/day 1/02_a.bvh".
 struct Parsed {
   std::string file;
-  std::vector<std::string> folders;  // kick, day 1
-  std::string base;                  // 02; empty where the word is the whole name
-  const RoleWords* role = nullptr;   // the words it ends with, if any
-  bool second = false;               // whether it ends with the second word
+  std::vector<std::string> words;   // kick, day 1, 02; without a name that is only the role
+  const RoleWords* role = nullptr;  // the words it ends with, if any
+  bool second = false;              // whether it ends with the second word
 };
 
 Parsed ParseName(const std::string& file) {
   Parsed parsed;
   parsed.file = file;
   const fs::path path(file);
-  for (const fs::path& folder : path.parent_path()) parsed.folders.push_back(folder.string());
-  parsed.base = path.stem().string();
-  const std::string stem = absl::AsciiStrToLower(parsed.base);
+  for (const fs::path& folder : path.parent_path()) parsed.words.push_back(folder.string());
+  const std::string name = path.stem().string(), stem = absl::AsciiStrToLower(name);
   for (const RoleWords& role : kRoleWords) {
     for (const bool second : {false, true}) {
       const std::string word = second ? role.second : role.first;
       if (!absl::EndsWith(stem, word)) continue;
       const std::size_t rest = stem.size() - word.size();
       if (rest > 0 && !IsSeparator(stem[rest - 1])) continue;
-      parsed.base.resize(rest > 0 ? rest - 1 : 0);
+      if (rest > 1) parsed.words.push_back(name.substr(0, rest - 1));
       parsed.role = &role;
       parsed.second = second;
       return parsed;
     }
   }
+  if (!name.empty()) parsed.words.push_back(name);
   return parsed;
 }
 
@@ -85,8 +84,7 @@ std::string ToFileName(absl::string_view text) {
 
 // Sets the label and the name of a file's pair.
 void NamePair(const Parsed& parsed, PairFiles* pair) {
-  std::vector<std::string> words = parsed.folders;
-  if (!parsed.base.empty()) words.push_back(parsed.base);
+  std::vector<std::string> words = parsed.words;
   const bool in_class_folder = words.size() > 1;
   if (words.empty()) return;
   pair->label = ToLabel(in_class_folder ? words.front() : WithoutNumber(words.front()));
@@ -103,12 +101,6 @@ void MakeNamesUnique(std::vector<PairFiles>* pairs) {
       pair.name = absl::StrCat(name, "_", number);
     }
   }
-}
-
-std::string NameOf(const Parsed& parsed) {
-  std::vector<std::string> words = parsed.folders;
-  if (!parsed.base.empty()) words.push_back(parsed.base);
-  return absl::StrJoin(words, "/");
 }
 
 void Add(PairFiles pair, Pairing* pairing) {
@@ -140,8 +132,8 @@ void AddGroup(const std::vector<Parsed>& group, Pairing* pairing) {
     pairing->refused.push_back(
         {one.file, alone ? absl::StrCat("other person: expected a file that ends in ",
                                         one.second ? role.first : role.second, ", got none")
-                         : absl::StrCat("files: expected one for each person of ", NameOf(one),
-                                        ", got more")});
+                         : absl::StrCat("files: expected one for each person of ",
+                                        absl::StrJoin(one.words, "/"), ", got more")});
   }
 }
 
@@ -166,7 +158,7 @@ Pairing PairByName(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     Parsed parsed = ParseName(file);
     if (parsed.role != nullptr) {
-      groups[{NameOf(parsed), parsed.role->first}].push_back(std::move(parsed));
+      groups[{absl::StrJoin(parsed.words, "/"), parsed.role->first}].push_back(std::move(parsed));
       continue;
     }
     PairFiles pair;
