@@ -8,10 +8,8 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
-#include "model/dataset/skeleton_completion.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/sbu.h"
-#include "model/motion/skeleton_json.h"
 
 namespace duet::dataset {
 namespace {
@@ -44,10 +42,7 @@ std::vector<int> ReadJoints(base::ObjectReader* reader, const std::string& key,
 void ReadSkeleton(base::ObjectReader* document, DatasetLayout* layout) {
   const Json& written = document->Object("skeleton");
   if (!document->ok()) return;
-  const absl::StatusOr<Json> object = CompleteSkeleton(written, &layout->notes);
-  document->Update(object.status());
-  if (!object.ok()) return;
-  absl::StatusOr<motion::SkeletonDocument> read = motion::ReadSkeleton(*object, "skeleton");
+  absl::StatusOr<motion::SkeletonDocument> read = ReadWrittenSkeleton(written, &layout->notes);
   document->Update(read.status());
   if (!read.ok()) return;
   layout->skeleton = std::move(read->skeleton);

@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_DATASET_LAYOUT_H_
 #define DUET_MODEL_DATASET_LAYOUT_H_
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "model/motion/body_part.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/skeleton_json.h"
 
 namespace duet::dataset {
 
@@ -53,6 +55,14 @@ DatasetLayout K3hiLayout();
 // missing and mistyped fields, unknown joints and a skeleton that is not a tree are
 // INVALID_ARGUMENT, naming the field, the expected value and the actual one.
 absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text);
+
+// Reads a "skeleton" object that people write, in dataset.json or a file of its own. Without
+// `parts`, adds the parts, and the root, hips and feet that are missing, from its bones and joint
+// names (retargeting/anatomy.h). The root is the joint to which no bone leads. `notes` receives one
+// line for each assumption. Errors: those of motion::ReadSkeleton; INVALID_ARGUMENT naming what
+// cannot be inferred, and the fields that specify it.
+absl::StatusOr<motion::SkeletonDocument> ReadWrittenSkeleton(nlohmann::json object,
+                                                             std::vector<std::string>* notes);
 
 // Whether `text` is the dataset.json of a set that `duet batch` made (dataset.proto). That is not a
 // layout: the folders of such a set are recognised like those of SBU and K3HI.

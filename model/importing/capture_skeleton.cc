@@ -6,13 +6,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
+#include "model/base/status_macros.h"
 #include "model/base/strict_json.h"
-#include "model/dataset/skeleton_completion.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/motion_file.h"
 #include "model/importing/steps.h"
 #include "model/motion/motion_limits.h"
-#include "model/motion/skeleton_json.h"
 #include "model/retargeting/anatomy.h"
 #include "model/retargeting/joint_names.h"
 
@@ -75,12 +74,11 @@ bool IsHelper(const formats::bvh::BvhJoint& joint) {
 
 // Returns the skeleton of the first person.
 absl::StatusOr<motion::Skeleton> BvhSkeleton(const std::string& text, const std::string& source) {
-  const absl::StatusOr<formats::bvh::BvhDocument> document = formats::bvh::ParseBvh(text, source);
-  if (!document.ok()) return document.status();
+  DUET_TRY(const formats::bvh::BvhDocument document, formats::bvh::ParseBvh(text, source));
   std::vector<std::string> names;
   std::vector<int> parents;
   std::vector<bool> kept;
-  for (const formats::bvh::BvhJoint& joint : document->joints) {
+  for (const formats::bvh::BvhJoint& joint : document.joints) {
     if (joint.parent < 0 && !names.empty()) break;  // the second person
     names.push_back(joint.name);
     parents.push_back(joint.parent);
@@ -97,10 +95,8 @@ absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file) {
         absl::StrCat(file.string(), ": skeleton: expected --skeleton for glTF, got none"));
   }
   if (format != formats::Format::kBvh) return motion::SbuSkeleton();
-  const absl::StatusOr<std::string> text =
-      base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
-  if (!text.ok()) return text.status();
-  return BvhSkeleton(*text, file.string());
+  DUET_TRY(const std::string text, base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion"));
+  return BvhSkeleton(text, file.string());
 }
 
 // Omits fingers and face: they move little, but losses weight every joint equally.
@@ -185,13 +181,10 @@ absl::StatusOr<CaptureSkeleton> ReadSpecified(const std::string& specified) {
   CaptureSkeleton found;
   found.origin = "the 15 joints of Duet's own models";
   if (specified != "sbu") {
-    const absl::StatusOr<std::string> text =
-        base::ReadFile(specified, kMaxSkeletonBytes, "a skeleton");
-    if (!text.ok()) return text.status();
-    absl::StatusOr<nlohmann::json> json = base::ParseHandwrittenJson(*text, kMaxSkeletonDepth);
-    if (json.ok()) json = dataset::CompleteSkeleton(*std::move(json), &found.notes);
+    DUET_TRY(const std::string text, base::ReadFile(specified, kMaxSkeletonBytes, "a skeleton"));
+    absl::StatusOr<nlohmann::json> json = base::ParseHandwrittenJson(text, kMaxSkeletonDepth);
     absl::StatusOr<motion::SkeletonDocument> read =
-        json.ok() ? motion::ReadSkeleton(*json, "skeleton") : json.status();
+        json.ok() ? dataset::ReadWrittenSkeleton(*std::move(json), &found.notes) : json.status();
     if (!read.ok()) {
       return absl::InvalidArgumentError(absl::StrCat(specified, ": ", read.status().message()));
     }
@@ -214,9 +207,8 @@ absl::StatusOr<CaptureSkeleton> ReadSpecified(const std::string& specified) {
 
 absl::StatusOr<CaptureSkeleton> FindSkeleton(const fs::path& file, const std::string& specified) {
   if (!specified.empty()) return ReadSpecified(specified);
-  absl::StatusOr<motion::Skeleton> skeleton = ReadCaptured(file);
-  if (!skeleton.ok()) return skeleton.status();
-  return Complete(*std::move(skeleton), file.filename().string());
+  DUET_TRY(motion::Skeleton skeleton, ReadCaptured(file));
+  return Complete(std::move(skeleton), file.filename().string());
 }
 
 }  // namespace duet::importing
