@@ -2,10 +2,11 @@
 #include <cstddef>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
+#include "model/base/statistics.h"
+#include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
 #include "model/importing/import.h"
 #include "model/importing/steps.h"
@@ -24,27 +25,11 @@ constexpr std::size_t kMostListed = 5;
 // Metres, mean of a data set.
 constexpr double kNoisyBones = 0.002;
 
-class Mean {
- public:
-  void Add(double value) {
-    sum_ += value;
-    ++count_;
-  }
-  double value() const { return count_ > 0 ? sum_ / count_ : 0; }
-
- private:
-  double sum_ = 0;
-  int count_ = 0;
-};
-
 // The path of a solved sequence: its class's folder, and a name from its place in the data set.
 PairFiles PathOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence) {
   PairFiles files;
-  std::string place = sequence.id;
-  if (absl::EndsWith(place, "/skeleton_pos.txt")) {
-    place.resize(place.size() - std::string("/skeleton_pos.txt").size());
-  }
-  place = std::string(absl::StripSuffix(place, ".txt"));
+  const std::string place(
+      absl::StripSuffix(absl::StripSuffix(sequence.id, "/skeleton_pos.txt"), ".txt"));
   const std::size_t slash = place.find('/');
   const bool own_folder = slash != std::string::npos && sequence.set.empty();
   files.label = sequence.labels.empty()
@@ -76,92 +61,77 @@ dataset::DatasetLayout LayoutOf(const dataset::Dataset& dataset) {
   return layout;
 }
 
+// Whether the bones of the people vary.
+bool HasNoisyBones(const dataset::Dataset& dataset) {
+  std::vector<double> noise;
+  for (const dataset::Sequence& sequence : dataset.sequences) {
+    for (const motion::Clip* person : {&sequence.pair.leader, &sequence.pair.follower}) {
+      noise.push_back(solver::BodyModel::BoneNoise(dataset.skeleton, person->poses));
+    }
+  }
+  return base::Mean(noise) > kNoisyBones;
+}
+
+// Solves both people. `ways` receives the way of every joint, metres.
+absl::StatusOr<SolvedSequence> SolvePair(const dataset::Dataset& dataset, bool one_floor,
+                                         dataset::Sequence* sequence, std::vector<double>* ways) {
+  Poses* const people[] = {&sequence->pair.leader.poses, &sequence->pair.follower.poses};
+  double floors[] = {solver::StandingHeight(dataset.skeleton, *people[0]),
+                     solver::StandingHeight(dataset.skeleton, *people[1])};
+  if (one_floor) floors[0] = floors[1] = (floors[0] + floors[1]) / 2;
+  SolvedSequence moved{sequence->id, 0};
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+    absl::StatusOr<Poses> solved =
+        solver::SolvePerson(dataset.skeleton, *people[i], dataset.frame_rate_hz, floors[i]);
+    if (!solved.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(sequence->id, ": ", solved.status().message()));
+    }
+    std::vector<double> own;
+    for (std::size_t p = 0; p < solved->all().size(); ++p) {
+      own.push_back(Distance(people[i]->all()[p], solved->all()[p]));
+    }
+    moved.metres = std::max(moved.metres, base::Mean(own));
+    ways->insert(ways->end(), own.begin(), own.end());
+    *people[i] = *std::move(solved);
+  }
+  return moved;
+}
+
 // Solves a data set in place.
-class Solving {
- public:
-  explicit Solving(dataset::Dataset* dataset) : dataset_(*dataset), skeleton_(dataset->skeleton) {}
-
-  absl::Status Run(SolveReport* report) {
-    Mean noise;
-    for (const dataset::Sequence& sequence : dataset_.sequences) {
-      noise.Add(solver::BodyModel::BoneNoise(skeleton_, sequence.pair.leader.poses));
-      noise.Add(solver::BodyModel::BoneNoise(skeleton_, sequence.pair.follower.poses));
-    }
-    noisy_ = noise.value() > kNoisyBones;
-    for (dataset::Sequence& sequence : dataset_.sequences) {
-      if (absl::Status status = SolvePair(&sequence); !status.ok()) return status;
-    }
-    report->sequences = static_cast<int>(dataset_.sequences.size());
-    report->moved = moved_.value();
-    std::sort(sequences_.begin(), sequences_.end(),
-              [](const SolvedSequence& a, const SolvedSequence& b) { return a.metres > b.metres; });
-    sequences_.resize(std::min(sequences_.size(), kMostListed));
-    report->most_moved = sequences_;
-    return absl::OkStatus();
+absl::Status SolveAll(dataset::Dataset* dataset, SolveReport* report) {
+  const bool one_floor = HasNoisyBones(*dataset);
+  std::vector<double> ways;
+  for (dataset::Sequence& sequence : dataset->sequences) {
+    DUET_TRY(report->most_moved.emplace_back(), SolvePair(*dataset, one_floor, &sequence, &ways));
   }
-
- private:
-  absl::Status SolvePair(dataset::Sequence* sequence) {
-    Poses* const people[] = {&sequence->pair.leader.poses, &sequence->pair.follower.poses};
-    double floors[] = {solver::StandingHeight(skeleton_, *people[0]),
-                       solver::StandingHeight(skeleton_, *people[1])};
-    if (noisy_) floors[0] = floors[1] = (floors[0] + floors[1]) / 2;
-    SolvedSequence moved{sequence->id, 0};
-    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
-      absl::StatusOr<Poses> solved =
-          solver::SolvePerson(skeleton_, *people[i], dataset_.frame_rate_hz, floors[i]);
-      if (!solved.ok()) {
-        return absl::InvalidArgumentError(
-            absl::StrCat(sequence->id, ": ", solved.status().message()));
-      }
-      moved.metres = std::max(moved.metres, MeasureWay(*people[i], *solved));
-      *people[i] = *std::move(solved);
-    }
-    sequences_.push_back(std::move(moved));
-    return absl::OkStatus();
-  }
-
-  double MeasureWay(const Poses& captured, const Poses& solved) {
-    Mean own;
-    for (std::size_t i = 0; i < captured.all().size(); ++i) {
-      const double way = Distance(captured.all()[i], solved.all()[i]);
-      own.Add(way);
-      moved_.Add(way);
-    }
-    return own.value();
-  }
-
-  dataset::Dataset& dataset_;
-  const motion::Skeleton& skeleton_;
-  bool noisy_ = false;  // bones vary
-  Mean moved_;
-  std::vector<SolvedSequence> sequences_;
-};
-
-absl::Status CheckSkeleton(const dataset::Dataset& dataset) {
-  const dataset::Sequence& sequence = dataset.sequences[0];
-  return solver::BodyModel::Measure(dataset.skeleton, sequence.pair.leader.poses).status();
+  report->sequences = static_cast<int>(dataset->sequences.size());
+  report->moved = base::Mean(ways);
+  std::vector<SolvedSequence>& moved = report->most_moved;
+  std::sort(moved.begin(), moved.end(),
+            [](const SolvedSequence& a, const SolvedSequence& b) { return a.metres > b.metres; });
+  moved.resize(std::min(moved.size(), kMostListed));
+  return absl::OkStatus();
 }
 
 }  // namespace
 
 absl::Status Solve(const fs::path& from, const fs::path& out, bool overwrite, SolveReport* report) {
-  if (absl::Status status = CheckOut(out, overwrite); !status.ok()) return status;
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(from);
-  if (!dataset.ok()) return dataset.status();
-  absl::Status status = CheckSkeleton(*dataset);
-  if (status.ok()) status = Solving(&*dataset).Run(report);
-  if (!status.ok()) return status;
+  DUET_RETURN_IF_ERROR(CheckOut(out, overwrite));
+  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(from));
+  const Poses& first = dataset.sequences[0].pair.leader.poses;  // names what the skeleton lacks
+  DUET_RETURN_IF_ERROR(solver::BodyModel::Measure(dataset.skeleton, first).status());
+  DUET_RETURN_IF_ERROR(SolveAll(&dataset, report));
   std::vector<ImportedSequence> sequences;
-  for (dataset::Sequence& sequence : dataset->sequences) {
+  for (dataset::Sequence& sequence : dataset.sequences) {
     const bool stated = sequence.leader_source == "index";
-    sequences.push_back({{PathOf(*dataset, sequence), std::move(sequence.pair.leader),
+    sequences.push_back({{PathOf(dataset, sequence), std::move(sequence.pair.leader),
                           std::move(sequence.pair.follower)},
                          dataset::LeaderSide::kLeft,
                          stated ? "index" : absl::StrCat("guess: ", sequence.leader_source),
                          std::move(sequence.labels)});
   }
-  return WriteDataset(out, LayoutOf(*dataset), sequences);
+  return WriteDataset(out, LayoutOf(dataset), sequences);
 }
 
 }  // namespace duet::importing
