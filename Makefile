@@ -21,7 +21,7 @@ demo: ## Build, start the server, synthesise some reactions, write pages to out/
 .PHONY: test
 test: ## Build everything, run the quick checks and every test
 	@scripts/install_packages.sh $(BUILD_LISTS) test
-	@JOBS=$(JOBS) scripts/test.sh
+	@JOBS=$(JOBS) scripts/check.py --test
 
 .PHONY: contrib
 contrib: ## Build and test the tools next to Duet: contrib/README.md

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Runs the checks of scripts/checks.tsv, configuring and building build/release first where one needs it.
 
-    scripts/check.py [NAME...]       runs every check, or only these; continues after a failure, ends with a table
-    scripts/check.py --quick         runs the checks of `make test`; stops at the first failure
-    scripts/check.py --write-guide   writes the table in docs/guides/checks.md
+    scripts/check.py [NAME...]             runs every check, or only these; continues after a failure, ends with a table
+    scripts/check.py --prepared NAME...    runs these with a build/release that is configured and built
+    scripts/check.py --test                what `make test` does: builds everything, runs the quick checks and every test
+    scripts/check.py --write-guide         writes the table in docs/guides/checks.md
 """
 
 import csv
@@ -12,26 +13,27 @@ import pathlib
 import shlex
 import subprocess
 import sys
+import tempfile
 import time
 import typing
+
+import build_tree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 GUIDE = ROOT / "docs/guides/checks.md"
 BUILD = "build/release"
 NEEDS = ("nothing", "configure", "build")  # each includes those before it
+IN_MAKE_TEST = ("before", "beside", "no")  # the tests
+# Four half cores: a test takes two, or one if it mostly waits (duet_share_cores in cmake/DuetTargets.cmake).
+TESTS = f"ctest --test-dir {BUILD} --output-on-failure --parallel 4"
 
 
 class Check(typing.NamedTuple):
     name: str
     needs: str
-    in_make_test: str  # yes, no, or the command that `make test` runs instead
+    in_make_test: str
     command: str
     promise: str
-
-    @property
-    def quick_command(self):
-        """The command of `make test`; None: the check is not part of it."""
-        return {"yes": self.command, "no": None}.get(self.in_make_test, self.in_make_test)
 
 
 def read_checks(path=ROOT / "scripts/checks.tsv"):
@@ -47,9 +49,7 @@ def guide_table(checks):
     yield "|---|---|---|---|"
     for check in checks:
         command = check.command.removeprefix("scripts/")
-        quick = (check.in_make_test if check.in_make_test in ("yes", "no")
-                 else f"`{check.in_make_test.removeprefix('scripts/')}`")
-        yield f"| `{check.name}` | `{command}` | {check.promise} | {quick} |"
+        yield f"| `{check.name}` | `{command}` | {check.promise} | {check.in_make_test} |"
 
 
 def write_guide(checks):
@@ -79,20 +79,45 @@ def step(name, command):
     return passed
 
 
-def run(commands, stop_at_failure):
-    """Runs (check, command) pairs in order. Returns name -> (passed, seconds)."""
-    results, done = {}, 1
-    for check, command in commands:
+def run(checks, stop_at_failure=False, prepared="nothing"):
+    """Runs checks in order. Returns name -> (passed, seconds)."""
+    results, done = {}, NEEDS.index(prepared) + 1
+    for check in checks:
         for need in NEEDS[done:NEEDS.index(check.needs) + 1]:
             if not prepare(need):
                 sys.exit(f"check.py: {need} failed")
             done += 1
         start = time.monotonic()
-        passed = step(check.name, command)
+        passed = step(check.name, check.command)
         results[check.name] = passed, time.monotonic() - start
         if stop_at_failure and not passed:
             break
     return results
+
+
+def all_passed(results):
+    return all(passed for passed, _ in results.values())
+
+
+def test(checks):
+    """Runs the quick checks and every test. Returns whether all passed.
+
+    Tests mostly wait. Therefore, the checks that compile most run beside them: at a lower priority and in half of the
+    jobs, so that tests come first. Their output follows that of the tests."""
+    start = time.monotonic()
+    if not all_passed(run([check for check in checks if check.in_make_test == "before"], stop_at_failure=True)):
+        return False
+    print(f"== Built and checked in {time.monotonic() - start:.0f} s; CTest prints the time of the tests.", flush=True)
+    beside = [check.name for check in checks if check.in_make_test == "beside"]
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
+        others = subprocess.Popen(["nice", sys.executable, __file__, "--prepared", *beside], cwd=ROOT, stdout=output,
+                                  stderr=subprocess.STDOUT,
+                                  env={**os.environ, "JOBS": str((build_tree.default_jobs() + 1) // 2)})
+        passed = step("tests", TESTS)
+        others_passed = others.wait() == 0
+        output.seek(0)
+        print(output.read(), flush=True)
+    return passed and others_passed
 
 
 def main(arguments):
@@ -100,18 +125,17 @@ def main(arguments):
     if arguments == ["--write-guide"]:
         write_guide(checks)
         return 0
-    if arguments == ["--quick"]:
-        results = run([(check, check.quick_command) for check in checks if check.quick_command],
-                      stop_at_failure=True)
-        return 0 if all(passed for passed, _ in results.values()) else 1
-    if unknown := set(arguments) - {check.name for check in checks}:
+    if arguments == ["--test"]:
+        return 0 if test(checks) else 1
+    prepared = "build" if arguments[:1] == ["--prepared"] else "nothing"
+    names = [name for name in arguments if name != "--prepared"]
+    if unknown := set(names) - {check.name for check in checks}:
         sys.exit(f"check.py: expected names of scripts/checks.tsv, got {' '.join(sorted(unknown))}")
-    results = run([(check, check.command) for check in checks
-                   if not arguments or check.name in arguments], stop_at_failure=False)
+    results = run([check for check in checks if not arguments or check.name in names], prepared=prepared)
     print()
     for name, (passed, seconds) in results.items():
         print(f"{name:18} {'ok' if passed else 'FAILED':7} {seconds:5.0f} s")
-    return 0 if all(passed for passed, _ in results.values()) else 1
+    return 0 if all_passed(results) else 1
 
 
 if __name__ == "__main__":

@@ -19,9 +19,9 @@ class ListTest(unittest.TestCase):
         self.assertEqual(len(names), len(set(names)))
         for one in self.checks:
             self.assertIn(one.needs, check.NEEDS, one.name)
+            self.assertIn(one.in_make_test, check.IN_MAKE_TEST, one.name)
             self.assertTrue(one.promise, one.name)
-            for command in filter(None, (one.command, one.quick_command)):
-                self.assertTrue((check.ROOT / shlex.split(command)[0]).is_file(), command)
+            self.assertTrue((check.ROOT / shlex.split(one.command)[0]).is_file(), one.command)
 
     def test_every_check_script_is_in_the_list(self):
         listed = {shlex.split(one.command)[0] for one in self.checks}
@@ -40,15 +40,14 @@ class RunTest(unittest.TestCase):
     def steps(self, needs, failing=(), **options):
         """The names of the steps that run() makes for checks with these needs."""
         made = []
-        checks = [check.Check(f"{number}", need, "yes", "true", "-")
+        checks = [check.Check(f"{number}", need, "before", "true", "-")
                   for number, need in enumerate(needs)]
 
         def step(name, _):
             made.append(name)
             return name not in failing
         with unittest.mock.patch.object(check, "step", step):
-            check.run([(one, one.command) for one in checks],
-                      **{"stop_at_failure": False, **options})
+            check.run(checks, **options)
         return made
 
     def test_what_a_check_needs_is_made_once_before_the_first_that_needs_it(self):
@@ -56,6 +55,7 @@ class RunTest(unittest.TestCase):
                          ["0", "configure", "1", "build", "2", "3"])
         self.assertEqual(self.steps(["build"]), ["configure", "build", "0"])
         self.assertEqual(self.steps(["nothing"]), ["0"])
+        self.assertEqual(self.steps(["configure", "build"], prepared="build"), ["0", "1"])
 
     def test_quick_run_stops_at_the_first_failure_and_the_full_run_goes_on(self):
         self.assertEqual(self.steps(["nothing"] * 3, ["1"], stop_at_failure=True), ["0", "1"])
@@ -71,6 +71,36 @@ class RunTest(unittest.TestCase):
                     contextlib.redirect_stdout(io.StringIO()) as printed:
                 self.assertEqual(check.main(["shell"]), status)
             self.assertIn("ok" if passed else "FAILED", printed.getvalue())
+
+
+class TestTest(unittest.TestCase):
+    def run_test(self, failing=None, beside_status=0):
+        """The status of `make test` and the steps that it made."""
+        made = []
+
+        def step(name, _):
+            made.append(name)
+            return name != failing
+
+        def start(command, **_):
+            made.append(command[command.index("--prepared"):])
+            return unittest.mock.Mock(wait=lambda: beside_status)
+        checks = [check.Check("a", "nothing", "before", "true", "-"), check.Check("b", "build", "beside", "true", "-"),
+                  check.Check("c", "build", "no", "true", "-")]
+        with unittest.mock.patch.object(check, "step", step), unittest.mock.patch("subprocess.Popen", start), \
+                unittest.mock.patch.object(check, "read_checks", lambda: checks), \
+                unittest.mock.patch.dict("os.environ", {"JOBS": "2"}), contextlib.redirect_stdout(io.StringIO()):
+            return check.main(["--test"]), made
+
+    def test_some_checks_run_before_the_tests_and_some_beside_them(self):
+        self.assertEqual(self.run_test(), (0, ["a", ["--prepared", "b"], "tests"]))
+
+    def test_failed_check_before_the_tests_ends_the_run(self):
+        self.assertEqual(self.run_test(failing="a"), (1, ["a"]))
+
+    def test_failed_test_and_failed_check_beside_it_decide_the_exit_status(self):
+        self.assertEqual(self.run_test(failing="tests")[0], 1)
+        self.assertEqual(self.run_test(beside_status=1)[0], 1)
 
 
 if __name__ == "__main__":
