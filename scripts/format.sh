@@ -19,4 +19,4 @@ if ! command -v clang-format-14 >/dev/null; then
 fi
 
 find model server client tests benchmarks contrib -name '*.h' -o -name '*.cc' |
-  sort | xargs --no-run-if-empty clang-format-14 "${mode[@]}"
+  sort | xargs --no-run-if-empty --max-args=64 --max-procs="$(nproc)" clang-format-14 "${mode[@]}"
