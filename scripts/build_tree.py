@@ -99,7 +99,7 @@ def portable_flags(command):
     kept, words = [], iter(command)
     for word in words:
         if word in ("-isystem", "-I"):
-            kept += [word, next(words)]
+            kept.append(word + next(words))
         elif word.startswith(("-D", "-I", "-std=")):
             kept.append(word)
     return kept

@@ -2,16 +2,20 @@
 """Checks with Clang that data guarded by a mutex is used only under it (-Wthread-safety as errors).
 
 Checks every file that includes the annotated mutex, which is the header with the attribute
-`capability("mutex")`. Files of one batch of the build (cmake/DuetBatches.cmake) are read together, because most of the time goes into
-headers that they share. Builds only the generated protocol headers.
+`capability("mutex")`. Most of the time goes into headers of libraries. Therefore, headers that many files include are precompiled once, and
+files of one batch of the build (cmake/DuetBatches.cmake) are read together. Builds only the generated protocol headers.
 
     scripts/check_thread_safety.py [build folder]     build/release, configured
 """
 
+import collections
 import os
+import pathlib
 import re
 import shutil
+import subprocess
 import sys
+import tempfile
 
 import build_tree
 import source_tree
@@ -41,10 +45,32 @@ def read_together(files, commands):
     return groups
 
 
-def check_command(compiler, words, files):
+def flags_of_all(groups):
+    """The flags of all groups together, because a precompiled header must agree with every file in its definitions."""
+    return list(dict.fromkeys(flag for words in groups for flag in build_tree.portable_flags(words)))
+
+
+def shared_headers(tree, groups):
+    """The headers of libraries that several groups include, directly or through the project's headers."""
+    counts = collections.Counter(
+        header for files in groups.values()
+        for header in set().union(*map(tree.reach, files)) if not tree.exists(header))
+    return sorted(header for header, count in counts.items() if count > 1)
+
+
+def precompile(compiler, flags, headers, folder):
+    """Precompiles the headers. Returns the file."""
+    source, precompiled = folder / "shared.h", folder / "shared.pch"
+    source.write_text("".join(f"#include <{header}>\n" for header in headers), encoding="utf-8")
+    subprocess.run([compiler, *flags, "-fpch-instantiate-templates", "-x", "c++-header", source, "-o", precompiled],
+                   check=True)
+    return precompiled
+
+
+def check_command(compiler, flags, precompiled, files):
     """Checks files by including them in an empty one."""
     sources = (word for file in files for word in ("-include", str(build_tree.ROOT / file)))
-    return [compiler, *build_tree.portable_flags(words), *FLAGS, *sources, "-x", "c++", os.devnull]
+    return [compiler, *flags, *FLAGS, "-include-pch", str(precompiled), *sources, "-x", "c++", os.devnull]
 
 
 def main(arguments):
@@ -56,12 +82,16 @@ def main(arguments):
     jobs = build_tree.default_jobs()
     build_tree.build_generated_sources(build_dir, jobs)
     commands = build_tree.compile_commands(build_dir)
-    files = files_to_check(source_tree.SourceTree(build_tree.ROOT), commands)
+    tree = source_tree.SourceTree(build_tree.ROOT)
+    files = files_to_check(tree, commands)
     if not files:
         sys.exit("no file sees an annotated mutex: nothing would be checked")
     groups = read_together(files, commands)
-    failures = build_tree.run_all([(group[0], check_command(compiler, words, group), build_dir)
-                                   for words, group in groups.items()], jobs)
+    flags = flags_of_all(groups)
+    with tempfile.TemporaryDirectory() as folder:
+        precompiled = precompile(compiler, flags, shared_headers(tree, groups), pathlib.Path(folder))
+        failures = build_tree.run_all([(group[0], check_command(compiler, flags, precompiled, group), build_dir)
+                                       for group in groups.values()], jobs)
     for output in failures.values():
         print(output, file=sys.stderr)
     print(f"Thread safety: {len(files)} files in {len(groups)} compilations, {len(failures)} of which failed.")

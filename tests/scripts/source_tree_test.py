@@ -39,7 +39,7 @@ class BuildTreeTest(test_project.ProjectTestCase):
         words = ("ccache c++ -DX=1 -I/a -isystem /b -O3 -fPIC -Wall -std=c++17 -Winvalid-pch "
                  "-include cmake_pch.hxx -o a.o -c a.cc").split()
         self.assertEqual(build_tree.portable_flags(words),
-                         ["-DX=1", "-I/a", "-isystem", "/b", "-std=c++17"])
+                         ["-DX=1", "-I/a", "-isystem/b", "-std=c++17"])
 
     def test_files_of_a_batch_have_the_command_of_the_batch(self):
         self.batch("model/a.cc", "model/b.cc")
