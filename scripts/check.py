@@ -102,7 +102,7 @@ def all_passed(results):
 def test(checks):
     """Runs the quick checks and every test. Returns whether all passed.
 
-    Tests mostly wait. Therefore, the checks that compile most run beside them: at a lower priority and in half of the
+    Tests mostly wait. Therefore, the checks that take long run beside them: at a lower priority and in half of the
     jobs, so that tests come first. Their output follows that of the tests."""
     start = time.monotonic()
     if not all_passed(run([check for check in checks if check.in_make_test == "before"], stop_at_failure=True)):
