@@ -3,7 +3,6 @@ eager PyTorch. Prints a line of JSON for each generator and batch: the median pr
 milliseconds of a few runs.
 
     inference_eager.py THREADS BATCH...
-    inference_eager.py --export FOLDER      writes sbu@1.onnx and sbu@3.onnx for any batch size instead
 
 Sizes: the embedded checkpoints' (sbu@1: the paper's sections 3.1 and 3.2; sbu@3: width 160, 4
 blocks, 4 heads, feed-forward 480, one step), 45 frames. Weights are random: speed does not depend
@@ -131,19 +130,7 @@ def milliseconds(network, batch):
     return 1000 * statistics.median(times)
 
 
-def export(folder):
-    arguments = {"leader": torch.randn(2, FRAMES, 3 * JOINTS),
-                 "labels": torch.zeros(2, FRAMES, CLASSES), "start": torch.zeros(2, START)}
-    for name, network in (("sbu@1", Paper()), ("sbu@3", Sampling())):
-        torch.onnx.export(network.eval(), tuple(arguments.values()), f"{folder}/{name}.onnx",
-                          input_names=list(arguments), output_names=["follower"],
-                          dynamic_axes={name: {0: "batch"} for name in (*arguments, "follower")},
-                          opset_version=14)
-
-
 def main():
-    if sys.argv[1] == "--export":
-        return export(sys.argv[2])
     threads, batches = int(sys.argv[1]), [int(batch) for batch in sys.argv[2:]]
     torch.set_num_threads(threads)
     torch.manual_seed(0)
