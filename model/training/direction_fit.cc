@@ -28,23 +28,13 @@ struct Sample {
   int interaction_class = 0;
 };
 
-// The horizontal direction from leader to follower, of any length: that of the capture's setup if
-// it defines one, otherwise from root to root in the first frame.
-motion::Vec3 PartnerDirection(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
-  if (sequence.partner_direction) return *sequence.partner_direction;
-  const motion::Vec3 toward =
-      sequence.pair.follower.at(0, skeleton.root) - sequence.pair.leader.at(0, skeleton.root);
-  return {toward.x, 0, toward.z};
-}
-
 void AddSample(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                std::vector<Sample>* samples) {
   const motion::Poses& leader = sequence.pair.leader.poses;
   std::optional<std::vector<double>> features = engine::DirectionFeatures(skeleton, leader);
-  const motion::Vec3 toward = PartnerDirection(skeleton, sequence);
-  if (!features || Norm(toward) == 0) return;
+  if (!features || !sequence.partner_direction) return;
   const double hips = motion::Standardisation(skeleton, leader).yaw();
-  const motion::Vec3 seen = RotateY(toward / Norm(toward), hips);
+  const motion::Vec3 seen = RotateY(*sequence.partner_direction, hips);
   samples->push_back(
       {*std::move(features), std::atan2(seen.x, -seen.z), sequence.interaction_class});
 }

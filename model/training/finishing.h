@@ -65,7 +65,8 @@ absl::StatusOr<std::vector<uint64_t>> ChooseDefaultSeeds(const engine::Synthesiz
 // Fits a regression of the partner's direction on the leader's motion. The training set is each
 // leader as captured and mirrored; in symmetric classes the follower is another leader. The first
 // estimate learns every leader also from behind, because a capture may confuse left and right hips.
-// Returns nothing if no leader's hips have a direction.
+// Returns nothing if the captures' setup does not define the direction, or no leader's hips have
+// one: such a model answers in the frame of the hips, as it was trained to.
 //
 // Source: ridge regressions in closed form; the penalties were chosen on SBU with held-out people.
 std::optional<engine::DirectionRegression> FitPartnerDirection(const dataset::Dataset& dataset,

@@ -47,6 +47,17 @@ void ScalePair(float scale, FlowExample* example) {
   Scale(scale, absl::MakeSpan(example->input.start->pose));
 }
 
+// States the partner's direction in half of the clips without a start if the capture's setup does
+// not define it: a request may state it too. In the other half the frame is that of the leader's
+// hips.
+void TellDirection(int root, base::Random* random, Example* example) {
+  dataset::Sequence& sequence = example->sequence;
+  if (example->start != StartKnowledge::kNone || sequence.partner_direction) return;
+  if (!random->Chance(0.5)) return;
+  const motion::Vec3 toward = sequence.pair.follower.at(0, root) - sequence.pair.leader.at(0, root);
+  if (toward.x != 0 || toward.z != 0) sequence.partner_direction = {toward.x, 0, toward.z};
+}
+
 FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                         const dataset::Sequence& sequence, bool needs_pose,
                         const TrainingOptions& options, base::Random* random) {
@@ -55,8 +66,10 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
   const bool goes_on = live && random->Chance(flow.live().several_known());
   const StartKnowledge start =
       goes_on || needs_pose ? StartKnowledge::kPose : DrawStart(options.common.start(), random);
-  FlowExample example = MakeFlowExample(
-      manifest, dataset, CapturedExample(dataset, sequence, start), flow.flow().target_smoothing());
+  Example captured = CapturedExample(dataset, sequence, start);
+  TellDirection(dataset.skeleton.root, random, &captured);
+  FlowExample example =
+      MakeFlowExample(manifest, dataset, captured, flow.flow().target_smoothing());
   example.live = live;
   if (goes_on || (start == StartKnowledge::kPose && random->Chance(flow.flow().several_known()))) {
     TellSeveral(example.target, random, &example.input);

@@ -39,6 +39,7 @@ dataset::Sequence Pair(double off, double turn) {
   dataset::Sequence sequence;
   sequence.pair.leader = Reaching(root, turn + off * kDegrees, turn);
   sequence.pair.follower = Reaching(root + toward, turn + M_PI, turn + M_PI);
+  sequence.partner_direction = toward;
   return sequence;
 }
 
@@ -93,9 +94,7 @@ TEST(FitPartnerDirection, ClassesDifferInWhereThePartnerIs) {
   for (std::size_t i = 0; i < count; ++i) {
     dataset::Sequence other = dataset.sequences[i];
     other.interaction_class = 2;
-    other.partner_direction = motion::RotateY(other.pair.follower.at(0, dataset.skeleton.root) -
-                                                  other.pair.leader.at(0, dataset.skeleton.root),
-                                              -50 * kDegrees);
+    other.partner_direction = motion::RotateY(*other.partner_direction, -50 * kDegrees);
     dataset.sequences.push_back(other);
   }
   const auto regression = FitPartnerDirection(dataset, AllOf(dataset));
@@ -107,7 +106,7 @@ TEST(FitPartnerDirection, ClassesDifferInWhereThePartnerIs) {
   EXPECT_LT(DegreesOff(*regression, leader, aside, third), 15);
 }
 
-TEST(FitPartnerDirection, DirectionOfTheSetupOverridesTheRoots) {
+TEST(FitPartnerDirection, DirectionIsThatOfTheSetup) {
   dataset::Dataset dataset = Reachers();
   const motion::Vec3 aside = motion::RotateY({0, 0, -1}, 40 * kDegrees);
   for (dataset::Sequence& sequence : dataset.sequences) {
@@ -120,8 +119,11 @@ TEST(FitPartnerDirection, DirectionOfTheSetupOverridesTheRoots) {
   EXPECT_LT(DegreesOff(*regression, Pair(0, 0).pair.leader, aside), 10);
 }
 
-TEST(FitPartnerDirection, ReturnsNothingWithoutHips) {
+TEST(FitPartnerDirection, ReturnsNothingWithoutHipsOrADirectionOfTheSetup) {
   dataset::Dataset dataset = Reachers();
+  for (dataset::Sequence& sequence : dataset.sequences) sequence.partner_direction.reset();
+  EXPECT_FALSE(FitPartnerDirection(dataset, AllOf(dataset)).has_value());
+  dataset = Reachers();
   EXPECT_FALSE(FitPartnerDirection(dataset, {}).has_value());
   dataset.skeleton.hips.reset();
   EXPECT_FALSE(FitPartnerDirection(dataset, AllOf(dataset)).has_value());

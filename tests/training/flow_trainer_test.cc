@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <utility>
 
 #include "model/network/batch.h"
@@ -71,6 +72,28 @@ TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   resumed.RunEpoch();
   EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
   EXPECT_TRUE(resumed.Finished());
+}
+
+TEST_F(FlowTrainerTest, DirectionIsStatedInHalfOfTheClipsWithoutAStart) {
+  for (dataset::Sequence& sequence : dataset_.sequences) sequence.partner_direction.reset();
+  Change("augmentation { noise: 0 } start { root: 0 pose: 0 }", &options_.common);
+  Change("flow { passes: 60 }", &options_.flow);
+  const auto [left, right] = *dataset_.skeleton.hips;
+  const auto in_the_frame_of_the_hips = [&, left = left, right = right] {
+    int hips = 0, all = 0;
+    for (const auto& batch : DrawFlowEpoch(manifest_, dataset_, AllOf(dataset_), options_, 0)) {
+      for (const FlowExample& example : batch) {
+        const motion::Vec3 across =
+            example.input.leader.at(0, right) - example.input.leader.at(0, left);
+        hips += std::abs(across.z) < 1e-4f;
+        ++all;
+      }
+    }
+    return static_cast<double>(hips) / all;
+  };
+  EXPECT_NEAR(in_the_frame_of_the_hips(), 0.5, 0.1);
+  Change("start { pose: 1 }", &options_.common);  // which states it
+  EXPECT_EQ(in_the_frame_of_the_hips(), 0);
 }
 
 TEST_F(FlowTrainerTest, ClipsOfStillnessHaveTheirStartsAndLabels) {
