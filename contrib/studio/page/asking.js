@@ -67,7 +67,7 @@ async function react(count) {
     const chosen = galleryOrder(takes)[0];
     Object.assign(state, {takes, chosen, asked});
     if (count > 1) settings.seed = takes[chosen].seed;
-    await finish((performance.now() - begun) / 1000);
+    finish((performance.now() - begun) / 1000);
   } catch (error) {
     if (call.signal.aborted) return;
     call.abort();
@@ -83,7 +83,7 @@ function describeSeeds(takes) {
                             : `seeds ${takes[0].seed} to ${takes[takes.length - 1].seed}: choose one`;
 }
 
-async function finish(seconds) {
+function finish(seconds) {
   const {takes, chosen} = state;
   showFields();
   showAnswer();
@@ -96,11 +96,10 @@ async function finish(seconds) {
   if (takes.length > 1) element('gallery').scrollIntoView({block: 'nearest'});
   state.answers += 1;
   root.dataset.answers = state.answers;
-  await keepNow();
 }
 
 // Shows another answer of the gallery.
-async function choose(index) {
+function choose(index) {
   if (index === state.chosen) return;
   state.chosen = index;
   settings.seed = state.takes[index].seed;
@@ -109,7 +108,6 @@ async function choose(index) {
   showFields();
   changed(`choose seed ${settings.seed}`);
   tell(`Seed ${settings.seed}.`);
-  await keepNow();
 }
 
 function connectAsking() {

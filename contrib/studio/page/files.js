@@ -36,7 +36,7 @@ async function readMotion(name, bytes, model, query = []) {
                           frames: motion.leader.length, positions: Float32Array.from(motion.leader.flat(2))}};
 }
 
-// Reads a leader with the current settings. Returns {name, file, bytes, motion, notes, reading}.
+// Reads a leader with the current settings. Returns {name, bytes, motion, notes}.
 async function readLeader(name, bytes) {
   const query = READING.flatMap((setting) => (
     setting === 'joint_map' ? lines(settings.joint_map) : [settings[setting]]).filter(Boolean).map(
@@ -46,7 +46,7 @@ async function readLeader(name, bytes) {
     throw new Error(`${name}: expected a motion of at least ${LEAST_FRAMES} frames, got ${
         motion.frames}. A single pose has no reaction.`);
   }
-  return {name, bytes, notes, motion, file: fingerprint(bytes), reading: readingOf(settings)};
+  return {name, bytes, notes, motion};
 }
 
 // [frames][joints][3]

@@ -6,7 +6,7 @@ async function takeLeader(name, bytes) {
   tell(`Reading ${name} …`);
   stopCalls();
   const {leader: last} = state;
-  if (last && (last.name !== name || last.file !== fingerprint(bytes))) {
+  if (last && last.name !== name) {
     // What describes the previous file does not apply to this one.
     for (const setting of [...READING, 'curves', 'start', 'turn', 'pose', 'pins']) {
       settings[setting] = structuredClone(DEFAULTS[setting]);
@@ -14,11 +14,10 @@ async function takeLeader(name, bytes) {
     showFields();
   }
   const leader = await readLeader(name, bytes);
-  Object.assign(state, {leader, takes: [], chosen: 0, asked: '', awaited: ''});
-  Object.assign(settings, {leader: name, file: leader.file});
+  Object.assign(state, {leader, takes: [], chosen: 0, asked: ''});
+  settings.leader = name;
   showLeader();
   changed(`open ${name}`);
-  await keepNow();
 }
 
 async function takeFile(file) {
@@ -30,7 +29,6 @@ async function takeRig(file) {
   state.rig = {name: file.name, bytes: await file.arrayBuffer()};
   showRig();
   changed('rig');
-  await keepNow();
 }
 
 function showRig() {

@@ -8,7 +8,6 @@ const state = {
   model: null,     // the model of the settings
   samples: [],
   leader: null,    // the result of readLeader
-  awaited: '',     // the name of the file that a link refers to
   takes: [],       // answers: {seed, positions, model, version, samples, unfamiliarity, grade, ...}
   chosen: 0,       // the take that is shown and downloaded
   asked: '',       // askedFor() of the takes
@@ -70,7 +69,6 @@ function changed(what) {
   followFrame();
   marker.draw();
   pinHandles.draw();
-  if (state.leader) keepSoon();
 }
 
 function isStale() {
@@ -254,7 +252,7 @@ async function chooseModel() {
     await takeLeader(leader.name, leader.bytes);
   } catch (error) {
     Object.assign(state, {leader: null, takes: [], chosen: 0, asked: ''});
-    Object.assign(settings, {leader: '', file: ''});
+    settings.leader = '';
     showLeader();
     changed('model');
     throw error;
@@ -288,29 +286,12 @@ async function takeSample(name) {
   await takeLeader(`${name}.bvh`, bytes);
 }
 
-// Restores the leader and the answers of the address, from the browser or from the samples.
-async function restore() {
-  const {leader: name, file} = settings;
+// Opens the leader of the address: a sample, or a file that the visitor has.
+async function openLinked() {
+  const {leader: name} = settings;
   if (!name) return;
-  const kept = await keptWork();
-  if (kept?.leader && kept.leader.name === name && kept.leader.file === file) {
-    if (kept.leader.reading !== readingOf(settings)) {
-      await takeLeader(name, kept.leader.bytes);
-      return;
-    }
-    const {leader, takes, chosen, asked, rig = null} = kept;
-    const isAnswered = asked === askedFor() || kept.address === addressOf(settings);
-    Object.assign(state, isAnswered ? {leader, takes, chosen, asked, rig} : {leader, rig});
-    showLeader();
-    showRig();
-    return;
-  }
-  if (state.samples.includes(stemOf(name))) {
-    await takeLeader(name, await fetchSample(stemOf(name)));
-    return;
-  }
-  state.awaited = name;
-  element('empty').textContent = `This link needs the file ${name}. Drop it here.`;
+  if (state.samples.includes(stemOf(name))) await takeLeader(name, await fetchSample(stemOf(name)));
+  else element('empty').textContent = `This link needs the file ${name}. Drop it here.`;
 }
 
 async function takeLink() {
@@ -320,7 +301,7 @@ async function takeLink() {
   if (!modelNamed(wanted)) settings.model = nameOf(standard);
   showFields();
   showModel();
-  await restore();
+  await openLinked();
   undoHistory.endGesture();
   changed('open link');
   if (wanted && wanted !== settings.model) {
@@ -367,7 +348,6 @@ async function start() {
   connectPins();
   connectUndo(undoHistory);
   connectKeys();
-  window.addEventListener('pagehide', keepNow);
   await takeLink();
   window.addEventListener('hashchange', attempt(async () => {
     stopCalls();

@@ -10,7 +10,7 @@ const MAX_POSE = 300;
 const MAX_NAME = 120;  // characters; the gateway allows a few more
 
 const settings = {
-  leader: '', file: '',  // the name and the fingerprint of the leader's file
+  leader: '',  // the name of its file
   // Reading the file.
   side: 'left', unit: '', metres_per_unit: '', up_axis: '', frame_rate: '', joint_map: '',
   // The request. `labels` are the sliders' weights, `curves` those that change (curves.js), `seed` is a
@@ -107,10 +107,6 @@ function takeSetting(name, text) {
     if (!(name in CHOICES) || CHOICES[name].includes(text)) settings[name] = text.slice(0, 2000);
   }
 }
-
-// The settings for reading the file, for comparison, with the joints that are read.
-const readingOf = (all) => JSON.stringify([...READING.map((name) => all[name]),
-                                           ...(modelNamed(all.model)?.joint_names ?? [])]);
 
 // Whether a class of the model has a weight.
 const isAnyWeight = () => state.model.interaction_classes.some(

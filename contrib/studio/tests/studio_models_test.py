@@ -103,7 +103,8 @@ class StudioModelsTest(StudioTest):
         page = self.open_dance()
         shown = page.evaluate(FOLLOWER)
         again = self.open_still(page.evaluate("location.hash"), width=1200, height=900)
-        again.wait_until("state.takes.length === 1")
+        self.assertEqual(again.evaluate("settings.model"), page.evaluate("settings.model"))
+        self.react(again)
         np.testing.assert_allclose(again.evaluate(FOLLOWER), shown, atol=1e-6)
 
     def test_pins_work_with_every_joint(self):
