@@ -13,7 +13,6 @@
 #include "client/model_skeleton.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/base/file.h"
-#include "model/base/nearest.h"
 #include "model/base/program_flags.h"
 #include "model/base/text.h"
 #include "model/messages/message_text.h"
@@ -159,7 +158,7 @@ absl::Status CheckInputs(const ReactionArguments& arguments) {
       absl::StrCat("--follower-start: ", status.message(), "; expected a motion file or X,Y,Z"));
 }
 
-// Rejects a class that the model does not know and suggests the nearest name.
+// Rejects a class that the model does not know.
 absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model) {
   std::vector<ClassWeight> weights = request.weights;
   for (const WeightKeyframe& keyframe : request.keyframes) {
@@ -171,8 +170,7 @@ absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     return absl::InvalidArgumentError(
         absl::StrCat(request.keyframes.empty() ? "label" : "keyframe", ": class: expected one of ",
-                     model.name, " (", absl::StrJoin(known, ", "), "), got ", base::Quoted(name),
-                     base::DidYouMean(name, known)));
+                     model.name, " (", absl::StrJoin(known, ", "), "), got ", base::Quoted(name)));
   }
   return absl::OkStatus();
 }

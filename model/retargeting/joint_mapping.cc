@@ -15,7 +15,6 @@
 #include "absl/strings/str_split.h"
 #include "absl/types/span.h"
 #include "model/base/index.h"
-#include "model/base/nearest.h"
 #include "model/base/text.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/joint_names.h"
@@ -213,15 +212,14 @@ class Mapper {
     for (const auto& [target, name] : overrides) {
       const int joint = skeleton_.Find(target);
       if (joint < 0) {
-        return absl::InvalidArgumentError(absl::StrCat(
-            "joint map: target: expected one of ", absl::StrJoin(skeleton_.joint_names, ", "),
-            ", got ", base::Quoted(target), base::DidYouMean(target, skeleton_.joint_names)));
+        return absl::InvalidArgumentError(absl::StrCat("joint map: target: expected one of ",
+                                                       absl::StrJoin(skeleton_.joint_names, ", "),
+                                                       ", got ", base::Quoted(target)));
       }
       const int index = FindExactly(name);
       if (index < 0) {
-        return absl::InvalidArgumentError(absl::StrCat("joint map: ", target, "=", name, ": ",
-                                                       source_, " has no such joint; ", ListNames(),
-                                                       base::DidYouMean(name, names_)));
+        return absl::InvalidArgumentError(absl::StrCat(
+            "joint map: ", target, "=", name, ": ", source_, " has no such joint; ", ListNames()));
       }
       Take(joint, index);
       given_.insert(joint);
