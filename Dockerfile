@@ -45,9 +45,8 @@ RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
 FROM build AS build-training
 RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
     cmake --build --preset release --parallel "$(scripts/build_jobs.sh)" \
-    --target duet-train duet-eval duet-import duet-keyframe duet_torch_engine_module \
-    && cmake --install build/release --prefix /out/usr/local --strip --component training \
-    && cmake --install build/release --prefix /out/usr/local --strip --component torch
+    --target duet-train duet-eval duet-import duet-keyframe \
+    && cmake --install build/release --prefix /out/usr/local --strip --component training
 
 # The server image's root, with only the packages' files, and its bill of materials.
 FROM ${BASE} AS root

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Measures duet-server from its start to its first answer, and its memory then, with either engine: the
-median of five starts.
+"""Measures duet-server from its start to its first answer, and its memory then: the median of five
+starts.
 
     benchmarks/measure_start.py build/release
 """
@@ -15,13 +15,13 @@ import time
 SAMPLE = pathlib.Path(__file__).resolve().parent.parent / "samples/kick.bvh"
 
 
-def start(build, engine, folder):
+def start(build, folder):
     """Seconds until models are served and until the first answer came, resident megabytes then."""
     log = folder / "log"
     begin = time.perf_counter()
     with log.open("w", encoding="utf-8") as file:
         server = subprocess.Popen([build / "bin/duet-server", "--listen", "127.0.0.1:0",
-                                   "--metrics-listen", "off", "--engine", engine], stderr=file)
+                                   "--metrics-listen", "off"], stderr=file)
     try:
         while not (found := re.search(r'"event":"serving".*?"port":(\d+)',
                                       log.read_text(encoding="utf-8"))):
@@ -42,12 +42,10 @@ def start(build, engine, folder):
 
 def main():
     build = pathlib.Path(sys.argv[1]).resolve()
-    print("| engine | serving, s | first answer, s | resident, MB |\n|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
-        for engine in ("cpu", "torch"):
-            runs = [start(build, engine, pathlib.Path(name)) for _ in range(5)]
-            serving, answered, megabytes = (statistics.median(column) for column in zip(*runs))
-            print(f"| {engine} | {serving:.2f} | {answered:.2f} | {megabytes:.0f} |", flush=True)
+        runs = [start(build, pathlib.Path(name)) for _ in range(5)]
+    serving, answered, megabytes = (statistics.median(column) for column in zip(*runs))
+    print(f"serving after {serving:.2f} s, first answer after {answered:.2f} s, {megabytes:.0f} MB resident")
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 #   client              duet             the client and its manual pages
 #   client-development  libduet-dev      headers and libraries of the client
 #   server              duet-server      the server, its unit, its configuration
-#   training, torch     duet-training    training and evaluation; LibTorch for `--engine torch`
+#   training            duet-training    training and evaluation
 
 # Relative to the prefix, which is /usr in packages. Debian's locations for systemd's files.
 set(DUET_SYSTEMD_UNIT_DIR lib/systemd/system CACHE STRING "Folder of the service's unit")
@@ -40,11 +40,7 @@ set(CPACK_STRIP_FILES ON)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
 set(CPACK_COMPONENTS_ALL client client-development server training)
-if(DUET_TRAINING)
-  list(APPEND CPACK_COMPONENTS_ALL torch)
-endif()
 set(CPACK_COMPONENT_TRAINING_GROUP training)
-set(CPACK_COMPONENT_TORCH_GROUP training)
 set(CPACK_COMPONENT_CLIENT_GROUP client)
 set(CPACK_COMPONENT_CLIENT-DEVELOPMENT_GROUP development)
 set(CPACK_COMPONENT_SERVER_GROUP server)
@@ -89,7 +85,7 @@ set(CPACK_DEBIAN_TRAINING_PACKAGE_DEPENDS "libopenblas0-openmp")
 set(CPACK_DEBIAN_TRAINING_PACKAGE_RECOMMENDS "python3, python3-matplotlib, python3-sklearn")
 set(CPACK_DEBIAN_TRAINING_DESCRIPTION "training and evaluation of Duet's networks
 Imports pairs of motions, trains the networks that duet-server serves, and
-evaluates them. Includes the LibTorch engine of the server.")
+evaluates them.")
 
 # Finishes each package's folder: Debian's documents, compressed pages.
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/DuetFinishPackage.cmake)

@@ -14,7 +14,6 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TORCH_TARGET = "duet_torch"
 BATCH = re.compile(r"/Unity/unity_\w+\.cxx$")  # a file of CMake's that includes the sources of a batch
 BATCHED = re.compile(r'^#include "(.+)"$', re.MULTILINE)
-TORCH_LABEL = "libtorch"  # a test that loads LibTorch without linking it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -68,11 +67,10 @@ def read_tests(build_dir):
 
 
 def torch_free_tests(build_dir, label=None):
-    """The test programs that neither link nor load LibTorch; with `label`, only those with this label."""
+    """The test programs that do not link LibTorch; with `label`, only those with this label."""
     targets = read_targets(build_dir)
     return sorted(name for name, (_, _, labels) in read_tests(build_dir).items()
                   if name in targets and is_torch_free(targets, name)
-                  and TORCH_LABEL not in labels
                   and (label is None or label in labels))
 
 

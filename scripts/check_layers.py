@@ -59,7 +59,6 @@ LAYERS = (
     Layer("torch engine", "model/torch_engine",
           sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "network"),
           source_libraries=("torch",)),
-    Layer("torch plugin", "model/torch_plugin", sees=("base", "motion", "engine", "torch engine")),
     Layer("training", "model/training",
           sees=("base", "motion", "body", "retargeting", "dataset", "engine", "checkpoint",
                 "network"),
@@ -97,8 +96,7 @@ LAYERS = (
     Layer("lifecycle", "server/lifecycle", sees=("base", "motion", "engine") + SERVER,
           libraries=("rpc", "prometheus")),
     Layer("server program", "server/program",
-          sees=("base", "motion", "engine", "checkpoint", "cpu kernels", "cpu engine",
-                "torch plugin") + SERVER,
+          sees=("base", "motion", "engine", "checkpoint", "cpu kernels", "cpu engine") + SERVER,
           libraries=("rpc", "prometheus")),
     # The client.
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the test programs that neither link nor load LibTorch, one in each line.
+"""Prints the test programs that do not link LibTorch, one in each line.
 
     scripts/torch_free_tests.py BUILD_FOLDER [LABEL]     LABEL: only programs with this CTest label
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints whether to build training, evaluation and the LibTorch engine: the value of DUET_TRAINING (ON or OFF) if
+# Prints whether to build training and evaluation: the value of DUET_TRAINING (ON or OFF) if
 # it is set, else OFF if this release lacks a package of packages/build_training.txt, else ON.
 #   scripts/with_training.sh            prints ON or OFF
 #   scripts/with_training.sh --lists    prints the package lists of the build: build, build_training

@@ -312,58 +312,21 @@ void ReadListeners(ServerConfig* values, Mistakes& mistakes) {
   }
 }
 
-// More threads than this for each core would only take turns; hundreds of them take a machine a
+// More workers than this for each core would only take turns; hundreds of them take a machine a
 // minute to start. Small machines may exceed it for experiments.
-constexpr int kThreadsPerCore = 4;
-constexpr int kThreadsAnywhere = 32;
+constexpr int kWorkersPerCore = 4;
+constexpr int kWorkersAnywhere = 32;
 
-void CheckThreads(const ServerConfig& values, int cores, bool workers_given, Mistakes& mistakes) {
-  const auto most = static_cast<uint32_t>(std::max(kThreadsAnywhere, kThreadsPerCore * cores));
-  const uint32_t workers = values.workers();
-  const uint32_t threads = values.threads_per_worker();
-  if (workers * threads <= most) return;
-  if (workers_given && threads == 1) {
-    mistakes.Add("workers", absl::StrCat("1 to ", most, " on ", cores, " cores"),
-                 absl::StrCat(workers));
-    return;
-  }
-  mistakes.Add("threads_per_worker",
-               absl::StrCat("1 to ", std::max(1U, most / workers), " with ", workers, " workers"),
-               absl::StrCat(threads),
-               absl::StrCat("together they may have ", most, " threads on ", cores, " cores"));
+// An evaluation has one thread.
+void ReadWorkers(const ServerConfig& given, int cores, ServerConfig* values, Mistakes& mistakes) {
+  if (!given.has_workers()) values->set_workers(static_cast<uint32_t>(std::max(1, cores)));
+  const auto most = static_cast<uint32_t>(std::max(kWorkersAnywhere, kWorkersPerCore * cores));
+  if (values->workers() <= most) return;
+  mistakes.Add("workers", absl::StrCat("1 to ", most, " on ", cores, " cores"),
+               absl::StrCat(values->workers()));
 }
 
-// By default, every core gets a worker with one thread: evaluations of one window gain less from a
-// second thread than from a second window. LibTorch can use more threads. If only one of the two is
-// set, the other one uses up the cores.
-void ReadThreads(const ServerConfig& given, int cores, ServerConfig* values, Mistakes& mistakes) {
-  const bool one_thread = values->engine() == v1::ENGINE_CPU;
-  if (!given.has_threads_per_worker()) values->set_threads_per_worker(1);
-  if (one_thread && values->threads_per_worker() > 1) {
-    mistakes.Add("threads_per_worker", "1 with ENGINE_CPU",
-                 absl::StrCat(values->threads_per_worker()),
-                 "its evaluations have one thread each: more workers use more cores");
-    values->set_threads_per_worker(1);
-  }
-  const auto rest = [cores](uint32_t taken) {
-    return std::max(1U, static_cast<uint32_t>(cores) / taken);
-  };
-  if (!given.has_workers()) values->set_workers(rest(values->threads_per_worker()));
-  if (!given.has_threads_per_worker() && !one_thread) {
-    values->set_threads_per_worker(rest(values->workers()));
-  }
-  CheckThreads(*values, cores, given.has_workers(), mistakes);
-}
-
-void ReadEngine(const ServerConfig& given, int cores, ServerConfig* values, Mistakes& mistakes) {
-  if (values->engine() == v1::ENGINE_TORCH && values->precision() == v1::PRECISION_INT16) {
-    mistakes.Add("precision", "PRECISION_F32 with ENGINE_TORCH",
-                 v1::Precision_Name(values->precision()));
-  }
-  ReadThreads(given, cores, values, mistakes);
-}
-
-// Runs after ReadEngine: workers take memory.
+// Runs after ReadWorkers: workers take memory.
 void ReadMemory(const ServerConfig& given, std::uint64_t memory_bytes, ServerConfig* values,
                 Mistakes& mistakes) {
   if (!given.has_memory_limit_bytes()) values->set_memory_limit_bytes(memory_bytes);
@@ -432,7 +395,7 @@ Settings ReadSettings(const ServerConfig& given, int cores, const SettingSources
   SetDefaults(&values);
   ReadListeners(&values, mistakes);
   CheckFields(&values, mistakes);
-  ReadEngine(given, cores, &values, mistakes);
+  ReadWorkers(given, cores, &values, mistakes);
   ReadMemory(given, memory_bytes, &values, mistakes);
   CheckNames(values, mistakes);
   CheckSecurity(values, mistakes);

@@ -344,7 +344,6 @@ absl::Status DuetServer::Serve() {
                         {"metrics_port", metrics_port()},
                         {"admin_port", admin_port()},
                         {"workers", settings_.workers()},
-                        {"threads_per_worker", settings_.threads_per_worker()},
                         {"max_batch_windows", settings_.max_batch_windows()}});
   return absl::OkStatus();
 }

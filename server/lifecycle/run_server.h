@@ -18,7 +18,7 @@
 
 namespace duet::server::lifecycle {
 
-// Opens the engine that the settings select. Only the main program knows the engines.
+// Opens the engine as the settings choose. Only the main program names an engine.
 // Fails if the engine is not available here: "field: expected ..., got ...; hint".
 using EngineOpener = std::function<absl::StatusOr<registry::ModelSource>(const v1::ServerConfig&)>;
 

@@ -1,4 +1,4 @@
-// duet-server: the only file of the server that knows the engines.
+// duet-server: the only file of the server that names an engine.
 
 #include <cstdio>
 #include <filesystem>
@@ -14,7 +14,6 @@
 #include "model/base/program_output.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/packed_matrix.h"
-#include "model/torch_plugin/torch_plugin.h"
 #include "server/lifecycle/process_end.h"
 #include "server/lifecycle/run_server.h"
 
@@ -40,7 +39,7 @@ absl::StatusOr<std::vector<std::shared_ptr<const Synthesizer>>> Shared(AllLoaded
                                                          std::make_move_iterator(models->end()));
 }
 
-absl::StatusOr<ModelSource> OpenCpuEngine(const ServerConfig& settings) {
+absl::StatusOr<ModelSource> OpenEngine(const ServerConfig& settings) {
   CpuEngineOptions engine;
   if (settings.precision() == duet::v1::PRECISION_F32) {
     engine.precision = Precision::kFloat32;
@@ -54,32 +53,6 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const ServerConfig& settings) {
         return Shared(duet::cpu_engine::LoadCpuSynthesizer(folder, engine));
       },
       [engine] { return Shared(duet::cpu_engine::LoadEmbeddedSynthesizers(engine)); }};
-}
-
-absl::StatusOr<ModelSource> OpenTorchEngine(const ServerConfig& settings) {
-  const absl::StatusOr<duet::torch_plugin::TorchEngine> torch = duet::torch_plugin::Open();
-  if (!torch.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("engine: expected ENGINE_CPU, got ENGINE_TORCH, which cannot be opened here: ",
-                     torch.status().message()));
-  }
-  if (const absl::Status status =
-          torch->set_threads(static_cast<int>(settings.threads_per_worker()));
-      !status.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("engine: expected ENGINE_CPU, got ENGINE_TORCH, which cannot be used here: ",
-                     status.message()));
-  }
-  return ModelSource{"torch",
-                     [load = torch->load_folder](const std::filesystem::path& folder) {
-                       return Shared(load(folder));
-                     },
-                     [load = torch->load_embedded] { return Shared(load()); }};
-}
-
-absl::StatusOr<ModelSource> OpenEngine(const ServerConfig& settings) {
-  return settings.engine() == duet::v1::ENGINE_TORCH ? OpenTorchEngine(settings)
-                                                     : OpenCpuEngine(settings);
 }
 
 }  // namespace

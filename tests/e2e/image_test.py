@@ -7,8 +7,8 @@ import shutil
 
 import tools
 
-# What the image for training installs of a component; without other components, such as the server's unit.
-INSTALLED = re.compile(r'if\(CMAKE_INSTALL_COMPONENT STREQUAL "(?:training|torch)".*?endif', re.DOTALL)
+# What the image for training installs: without other components, such as the server's unit.
+INSTALLED = re.compile(r'if\(CMAKE_INSTALL_COMPONENT STREQUAL "training".*?endif', re.DOTALL)
 
 if not (tools.SOURCE / ".git").exists():
     tools.skip("the sources are not a git repository, whose revision the image has as a label")

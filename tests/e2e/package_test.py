@@ -17,7 +17,7 @@ import check_version  # noqa: E402
 
 BUILD, CPACK = sys.argv[1:]
 del sys.argv[1:]
-COMPONENTS = "client;server;training;torch"
+COMPONENTS = "client;server;training"
 
 
 def run(*command, **options):
@@ -50,8 +50,7 @@ class PackageTest(tools.FolderTest):
                      "usr/bin/duet-server",
                      "usr/lib/systemd/system/duet-server.service",
                      "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto",
-                     "usr/bin/duet-train", "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe",
-                     "usr/lib/duet/libduet_torch_engine.so"):
+                     "usr/bin/duet-train", "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe"):
             self.assertTrue((self.root / path).is_file(), path)
         for name in self.packages:
             self.assertIn("mocap.cs.cmu.edu",

@@ -87,13 +87,13 @@ TEST(ReadConfigFileTest, ReportsEveryMistakeWithItsPlace) {
 TEST(ParseCommandLineTest, ReadsFlagsOfEveryKind) {
   const absl::StatusOr<CommandLine> line =
       Parse(absl::StrSplit("--listen a:1 --no-reflection --workers 2 --max-request-bytes 6000 "
-                           "--drain-seconds 0.5 --engine torch --clean-up off --models free "
+                           "--drain-seconds 0.5 --precision f32 --clean-up off --models free "
                            "--version-label sbu:stable=3 --version-label sbu:canary=4",
                            ' '));
   ASSERT_THAT(line, IsOk());
   const v1::ServerConfig expected = Given(
       R"(listen: "a:1" reflection: false workers: 2 max_request_bytes: 6000 drain_seconds: 0.5
-         engine: ENGINE_TORCH clean_up: CLEAN_UP_POLICY_OFF models: SERVED_MODELS_FREE
+         precision: PRECISION_F32 clean_up: CLEAN_UP_POLICY_OFF models: SERVED_MODELS_FREE
          version_labels { model: "sbu" label: "stable" version: 3 }
          version_labels { model: "sbu" label: "canary" version: 4 })");
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(line->config, expected))
@@ -147,15 +147,15 @@ TEST(ParseCommandLineTest, ReportsEveryWrongValueAndKeepsTheOthers) {
       "-2"};
   const CommandLine line =
       ParseCommandLine(static_cast<int>(argv.size()), argv.data(),
-                       {{"DUET_SERVER_WORKERS", "1.5"}, {"DUET_SERVER_ENGINE", "gpu"}});
-  EXPECT_THAT(line.errors,
-              UnorderedElementsAre("--workers: expected a whole number of 0 or more, got \"two\"",
-                                   "--max-calls: expected a whole number of 0 or more, got \"x\"",
-                                   "--grace-seconds: expected a number, got \"soon\"",
-                                   "--clean-up: expected auto, on or off, got \"maybe\"",
-                                   "DUET_SERVER_ENGINE: expected cpu or torch, got \"gpu\"",
-                                   "DUET_SERVER_WORKERS: expected a whole number of 0 or more, got "
-                                   "\"1.5\""));
+                       {{"DUET_SERVER_WORKERS", "1.5"}, {"DUET_SERVER_PRECISION", "f64"}});
+  EXPECT_THAT(line.errors, UnorderedElementsAre(
+                               "--workers: expected a whole number of 0 or more, got \"two\"",
+                               "--max-calls: expected a whole number of 0 or more, got \"x\"",
+                               "--grace-seconds: expected a number, got \"soon\"",
+                               "--clean-up: expected auto, on or off, got \"maybe\"",
+                               "DUET_SERVER_PRECISION: expected auto, f32 or int16, got \"f64\"",
+                               "DUET_SERVER_WORKERS: expected a whole number of 0 or more, got "
+                               "\"1.5\""));
   EXPECT_EQ(line.config.drain_seconds(), -2);
   EXPECT_FALSE(line.config.reflection());
   EXPECT_THAT(ReadSettings(line, 4).mistakes,

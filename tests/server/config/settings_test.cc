@@ -217,7 +217,6 @@ TEST(SettingsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
   EXPECT_TRUE(settings->model_repository().empty());
   EXPECT_EQ(settings->admin_listen(), "off");
   EXPECT_EQ(settings->workers(), 4);
-  EXPECT_EQ(settings->threads_per_worker(), 1);
 }
 
 TEST(SettingsTest, ValidValuesStayAsGiven) {
@@ -225,8 +224,8 @@ TEST(SettingsTest, ValidValuesStayAsGiven) {
       R"(listen: "[::1]:1" metrics_listen: "off" model_repository: "/models" default_model: "sbu"
          version_labels { model: "sbu" label: "stable" version: 3 }
          tls_certificate_file: "/c" tls_key_file: "/k" tls_client_ca_file: "/a" access_file: "/l"
-         log_level: LOG_LEVEL_ERROR reflection: false engine: ENGINE_TORCH
-         workers: 2 threads_per_worker: 3 max_calls: 5 max_batch_delay_seconds: 0.25
+         log_level: LOG_LEVEL_ERROR reflection: false precision: PRECISION_F32
+         workers: 2 max_calls: 5 max_batch_delay_seconds: 0.25
          max_request_bytes: 4096 max_transport_bytes: 10000 clean_up: CLEAN_UP_POLICY_OFF)");
   const absl::StatusOr<v1::ServerConfig> settings = ResolveSettings(given, 4);
   ASSERT_THAT(settings, IsOk());
@@ -242,15 +241,9 @@ TEST(SettingsTest, AddressesGetTheirNormalForm) {
   EXPECT_EQ(settings->metrics_listen(), "off");
 }
 
-TEST(SettingsTest, DefaultWorkersTimesThreadsEqualTheCores) {
-  const auto with_threads = Given("engine: ENGINE_TORCH threads_per_worker: 2");
-  EXPECT_EQ(ResolveSettings(with_threads, 7)->workers(), 3);
-  EXPECT_EQ(ResolveSettings(with_threads, 1)->workers(), 1);
-  const auto with_workers = Given("engine: ENGINE_TORCH workers: 2");
-  EXPECT_EQ(ResolveSettings(with_workers, 7)->threads_per_worker(), 3);
-  EXPECT_EQ(ResolveSettings(with_workers, 1)->threads_per_worker(), 1);
-  EXPECT_EQ(ResolveSettings(Given("workers: 2"), 7)->threads_per_worker(), 1)
-      << "an evaluation of the cpu engine has one thread";
+TEST(SettingsTest, EveryCoreHasAWorkerByDefault) {
+  EXPECT_EQ(ResolveSettings(v1::ServerConfig(), 7)->workers(), 7);
+  EXPECT_EQ(ResolveSettings(Given("workers: 2"), 7)->workers(), 2);
 }
 
 TEST(SettingsTest, MistakesNameTheFieldWhatIsExpectedAndWhatWasGiven) {
@@ -260,15 +253,8 @@ TEST(SettingsTest, MistakesNameTheFieldWhatIsExpectedAndWhatWasGiven) {
       {"admin_listen: 'b'", "admin_listen: expected host:port"},
       {"workers: 0", "workers: expected 1 to 1024, got 0"},
       {"workers: 129", "workers: expected 1 to 32 on 4 cores, got 129"},
-      {"engine: ENGINE_TORCH workers: 2 threads_per_worker: 1024",
-       "threads_per_worker: expected 1 to 16 with 2 workers, got 1024; together they may have 32 "
-       "threads on 4 cores"},
-      {"threads_per_worker: 3", "threads_per_worker: expected 1 with ENGINE_CPU, got 3; its"},
-      {"engine: ENGINE_UNSPECIFIED", "engine: expected ENGINE_CPU or ENGINE_TORCH, got 0"},
       {"precision: 9",
        "precision: expected PRECISION_AUTO, PRECISION_F32 or PRECISION_INT16, got 9"},
-      {"engine: ENGINE_TORCH precision: PRECISION_INT16",
-       "precision: expected PRECISION_F32 with ENGINE_TORCH, got PRECISION_INT16"},
       {"watchdog_seconds: 0.5", "watchdog_seconds: expected 0, or 1 to 86400, got 0.5"},
       {"max_request_bytes: 4294967296",
        "max_request_bytes: expected 1024 to 536870912, got 4294967296"},
