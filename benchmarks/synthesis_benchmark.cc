@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "model/cpu_engine/cpu_synthesizer.h"
+#include "model/embedded/embedded.h"
 #include "model/engine/clip_synthesis.h"
-#include "model/torch_engine/torch_synthesizer.h"
+#include "model/network/exceptions.h"
+#include "model/network/torch_network.h"
 
 namespace {
 
@@ -24,10 +26,22 @@ constexpr int kClipFrames[] = {46, 460, 4600, 46000};
 // Of a whole answer.
 constexpr int kAnswerFrames = 45;
 
-Models Loaded(absl::StatusOr<Models> models) {
-  if (models.ok()) return *std::move(models);
-  std::cerr << models.status().message() << "\n";
+template <typename T>
+T Loaded(absl::StatusOr<T> loaded) {
+  if (loaded.ok()) return *std::move(loaded);
+  std::cerr << loaded.status().message() << "\n";
   std::exit(1);
+}
+
+Models LoadTorchModels() {
+  Models models;
+  for (const auto& embedded : duet::embedded::EmbeddedCheckpoints()) {
+    const auto checkpoint =
+        Loaded(duet::checkpoint::ParseCheckpoint(embedded.manifest, embedded.weights));
+    models.push_back(MakeSynthesizer(checkpoint.manifest.model, checkpoint.manifest.standardisation,
+                                     Loaded(duet::network::MakeTorchNetwork(checkpoint))));
+  }
+  return models;
 }
 
 // A made-up person who sways: speed does not depend on what the leader does.
@@ -127,11 +141,11 @@ void Register(const std::string& engine, const Models& models) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const absl::Status status = duet::torch_engine::SetTorchThreads(1); !status.ok()) {
+  if (const absl::Status status = duet::network::SetThreads(1); !status.ok()) {
     std::cerr << status.message() << "\n";
     return 1;
   }
-  const Models torch = Loaded(duet::torch_engine::LoadEmbeddedSynthesizers());
+  const Models torch = LoadTorchModels();
   const Models f32 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kFloat32}));
   const Models int16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kInt16}));
   Register("torch", torch);

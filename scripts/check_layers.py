@@ -27,7 +27,7 @@ class Layer:
 
 MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
                 "formats")
-MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
+MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "training")
 MEASURING = ("metrics", "baselines", "judge", "report")
 SERVER = ("server common", "batching", "registry", "server metrics", "security",
           "server config", "service", "admin", "lifecycle")
@@ -56,9 +56,6 @@ LAYERS = (
           sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "cpu kernels")),
     Layer("network", "model/network", sees=("base", "motion", "engine", "checkpoint"),
           libraries=("torch",)),
-    Layer("torch engine", "model/torch_engine",
-          sees=("base", "motion", "engine", "checkpoint", "embedded checkpoints", "network"),
-          source_libraries=("torch",)),
     Layer("training", "model/training",
           sees=("base", "motion", "body", "retargeting", "dataset", "engine", "checkpoint",
                 "network"),
@@ -75,7 +72,7 @@ LAYERS = (
           sees=("base", "motion", "dataset", "metrics")),
     Layer("evaluation program", "model/evaluation/program",
           sees=MOTION_FILES + ("authoring", "body", "dataset", "solver", "engine", "checkpoint",
-                                "network", "torch engine", "training") + MEASURING),
+                                "cpu kernels", "cpu engine", "network", "training") + MEASURING),
     # The server, innermost first.
     Layer("server common", "server/common", sees=("base",), libraries=("rpc",)),
     Layer("batching", "server/batching", sees=("base", "motion", "engine", "server common")),

@@ -75,13 +75,6 @@ class CpuNetwork : public engine::Network {
   const Generator generator_;
 };
 
-std::unique_ptr<engine::Synthesizer> Make(const checkpoint::Checkpoint& checkpoint,
-                                          const CpuEngineOptions& options) {
-  return MakeSynthesizer(checkpoint.manifest.model, checkpoint.manifest.standardisation,
-                         MakeCpuNetwork(checkpoint, options.precision), options.pipeline,
-                         checkpoint::CriticOf(checkpoint));
-}
-
 }  // namespace
 
 kernels::Precision BestPrecision() {
@@ -100,11 +93,18 @@ std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoi
 
 std::size_t ThreadScratchBytes() { return ThreadScratch().bytes(); }
 
+std::unique_ptr<engine::Synthesizer> MakeCpuSynthesizer(const checkpoint::Checkpoint& checkpoint,
+                                          const CpuEngineOptions& options) {
+  return MakeSynthesizer(checkpoint.manifest.model, checkpoint.manifest.standardisation,
+                         MakeCpuNetwork(checkpoint, options.precision), options.pipeline,
+                         checkpoint::CriticOf(checkpoint));
+}
+
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadCpuSynthesizer(
     const std::filesystem::path& folder, const CpuEngineOptions& options) {
   absl::StatusOr<checkpoint::Checkpoint> checkpoint = checkpoint::ReadCheckpoint(folder);
   if (!checkpoint.ok()) return checkpoint.status();
-  return Make(*checkpoint, options);
+  return MakeCpuSynthesizer(*checkpoint, options);
 }
 
 absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSynthesizers(
@@ -114,7 +114,7 @@ absl::StatusOr<std::vector<std::unique_ptr<engine::Synthesizer>>> LoadEmbeddedSy
     absl::StatusOr<checkpoint::Checkpoint> checkpoint =
         checkpoint::ParseCheckpoint(embedded.manifest, embedded.weights);
     if (!checkpoint.ok()) return checkpoint.status();
-    synthesizers.push_back(Make(*checkpoint, options));
+    synthesizers.push_back(MakeCpuSynthesizer(*checkpoint, options));
   }
   return synthesizers;
 }

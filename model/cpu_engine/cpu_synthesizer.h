@@ -32,6 +32,10 @@ struct CpuEngineOptions {
   kernels::Precision precision = BestPrecision();
 };
 
+// A synthesizer of such a network.
+std::unique_ptr<engine::Synthesizer> MakeCpuSynthesizer(const checkpoint::Checkpoint& checkpoint,
+                                                        const CpuEngineOptions& options = {});
+
 // Reads a checkpoint folder. Errors: those of ReadCheckpoint.
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadCpuSynthesizer(
     const std::filesystem::path& folder, const CpuEngineOptions& options = {});

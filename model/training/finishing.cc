@@ -19,10 +19,7 @@
 #include "model/engine/network_synthesizer.h"
 #include "model/motion/filter.h"
 #include "model/motion/poses.h"
-#include "model/network/batch.h"
-#include "model/network/flow_generator.h"
-#include "model/network/flow_sampler.h"
-#include "model/network/parameters.h"
+#include "model/network/torch_network.h"
 #include "model/training/optimiser.h"
 #include "model/training/sampler.h"
 
@@ -50,28 +47,6 @@ engine::Stretches StretchesOf(const dataset::Dataset& dataset, const std::vector
   return stretches;
 }
 
-// The generator as the engine sees it.
-class GeneratorNetwork : public engine::Network {
- public:
-  explicit GeneratorNetwork(const checkpoint::Checkpoint& checkpoint)
-      : manifest_(checkpoint.manifest), generator_(checkpoint.manifest) {
-    loaded_ = network::LoadParameters(checkpoint, generator_);
-    generator_->eval();
-  }
-  const absl::Status& loaded() const { return loaded_; }
-
-  absl::StatusOr<std::vector<motion::Poses>> Run(
-      absl::Span<const engine::NetworkInput> inputs) const override {
-    const torch::NoGradGuard no_grad;
-    return network::TakeAll(network::AnswerWindows(generator_, manifest_, inputs), inputs);
-  }
-
- private:
-  const checkpoint::Manifest& manifest_;
-  network::FlowGenerator generator_;
-  absl::Status loaded_;
-};
-
 }  // namespace
 
 void MeasurePairs(const dataset::Dataset& whole, const std::vector<int>& takes,
@@ -98,8 +73,7 @@ void MeasurePairs(const dataset::Dataset& whole, const std::vector<int>& takes,
 
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> SynthesizerOf(
     const checkpoint::Checkpoint& checkpoint) {
-  auto network = std::make_unique<GeneratorNetwork>(checkpoint);
-  if (!network->loaded().ok()) return network->loaded();
+  DUET_TRY(auto network, network::MakeTorchNetwork(checkpoint));
   return MakeSynthesizer(checkpoint.manifest.model, checkpoint.manifest.standardisation,
                          std::move(network));
 }

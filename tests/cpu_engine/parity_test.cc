@@ -8,7 +8,7 @@
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/embedded/embedded.h"
 #include "model/motion/skeleton.h"
-#include "model/torch_engine/torch_synthesizer.h"
+#include "model/network/torch_network.h"
 #include "tests/cpu_engine/network_inputs.h"
 #include "tests/cpu_engine/random_checkpoint.h"
 #include "tests/support/architectures.h"
@@ -56,7 +56,7 @@ float Farthest(const std::vector<motion::Poses>& a, const std::vector<motion::Po
 
 float FromTorch(const Checkpoint& checkpoint, Precision precision,
                 const std::vector<NetworkInput>& inputs) {
-  const auto torch = torch_engine::MakeTorchNetwork(checkpoint);
+  const auto torch = network::MakeTorchNetwork(checkpoint);
   EXPECT_THAT(torch, IsOk());
   if (!torch.ok()) return 1e9f;
   return Farthest(Answers(**torch, inputs),

@@ -20,15 +20,15 @@ class CheckLayersTest(unittest.TestCase):
         self.write("model/motion/clip.h")
         self.write("model/engine/synthesizer.h", "model/motion/clip.h")
         self.write("model/network/generator.h", "torch/torch.h", "model/motion/clip.h")
-        self.write("model/torch_engine/torch_synthesizer.h", "model/engine/synthesizer.h")
-        self.write("model/torch_engine/torch_synthesizer.cc", "model/torch_engine/torch_synthesizer.h",
+        self.write("model/evaluation/judge/judge.h", "model/engine/synthesizer.h")
+        self.write("model/evaluation/judge/judge.cc", "model/evaluation/judge/judge.h",
                    "model/network/generator.h")
         self.write("server/service/service.h", "grpcpp/grpcpp.h", "model/engine/synthesizer.h")
         self.write("model/cpu_engine/cpu_synthesizer.h", "model/engine/synthesizer.h")
         self.write("server/program/main.cc", "server/service/service.h",
                    "model/cpu_engine/cpu_synthesizer.h")
         self.write("model/evaluation/program/main.cc", "model/engine/synthesizer.h",
-                   "model/torch_engine/torch_synthesizer.h")
+                   "model/evaluation/judge/judge.h")
         self.write("client/client.cc", "duet/v1/synthesis.grpc.pb.h", "model/motion/clip.h")
 
     def write(self, path, *includes):
@@ -58,7 +58,7 @@ class CheckLayersTest(unittest.TestCase):
                 ("model/motion/limits.cc", "server/service/limits.h", ('"service"',)),
                 ("server/service/warm_up.cc", "torch/torch.h", ("reaches torch",)),
                 ("server/registry/registry.cc", "model/cpu_engine/cpu_synthesizer.h", ('"cpu engine"',)),
-                ("server/program/torch.cc", "model/torch_engine/torch_synthesizer.h", ('"torch engine"',)),
+                ("server/program/torch.cc", "model/evaluation/judge/judge.h", ('"judge"',)),
                 ("client/call.cc", "model/engine/synthesizer.h", ('"client"', '"engine"')),
                 ("client/call.cc", "model/engine/made_while_building.h", ('"engine"',)),
                 ("model/new_idea/idea.h", "cmath", ("expected a folder of a layer",)),
@@ -69,18 +69,18 @@ class CheckLayersTest(unittest.TestCase):
                 (self.root / path).unlink()
 
     def test_torch_must_not_leak_through_a_header(self):
-        self.write("model/torch_engine/torch_synthesizer.h", "model/network/generator.h")
+        self.write("model/evaluation/judge/judge.h", "model/network/generator.h")
         self.assertEqual([v.split(" reaches torch by ") for v in self.violations()], [
+            ['model/evaluation/judge/judge.h:1: layer "judge"',
+             "model/network/generator.h -> torch/torch.h"],
             ['model/evaluation/program/main.cc:2: layer "evaluation program"',
-             "model/torch_engine/torch_synthesizer.h -> model/network/generator.h -> "
-             "torch/torch.h"],
-            ['model/torch_engine/torch_synthesizer.h:1: layer "torch engine"',
-             "model/network/generator.h -> torch/torch.h"]])
+             "model/evaluation/judge/judge.h -> model/network/generator.h -> "
+             "torch/torch.h"]])
 
     def test_a_source_may_reach_what_its_header_may_not(self):
-        self.write("model/torch_engine/torch_synthesizer.h", "torch/torch.h")
+        self.write("model/evaluation/judge/judge.h", "torch/torch.h")
         self.assertTrue(any(
-            v.startswith('model/torch_engine/torch_synthesizer.h:1: layer "torch engine" reaches torch')
+            v.startswith('model/evaluation/judge/judge.h:1: layer "judge" reaches torch')
             for v in self.violations()))
 
     def test_namespace_is_the_folder_s_path(self):

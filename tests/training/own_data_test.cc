@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/dataset/dataset.h"
 #include "model/importing/import.h"
-#include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/options.h"
 #include "model/training/run.h"
 #include "tests/importing/bvh_people.h"
@@ -52,7 +52,7 @@ class OwnDataTest : public ::testing::Test {
     plan.train = AllOf(dataset_);
     std::ostringstream progress;
     ASSERT_THAT(RunTraining(plan, dataset_, false, &progress), IsOk());
-    const auto model = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan));
+    const auto model = cpu_engine::LoadCpuSynthesizer(CheckpointFolder(plan));
     ASSERT_THAT(model, IsOk());
     EXPECT_EQ((*model)->description().name, "studio");
     EXPECT_THAT((*model)->description().classes, ElementsAre("kick", "shove"));

@@ -8,7 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "model/checkpoint/architecture.h"
-#include "model/torch_engine/torch_synthesizer.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/training/options.h"
 #include "model/training/sampler.h"
 #include "tests/support/matchers.h"
@@ -57,7 +57,7 @@ class RunTest : public ::testing::Test {
 
 TEST_F(RunTest, WritesACheckpointThatAnswers) {
   ASSERT_THAT(Go(), IsOk());
-  const auto synthesizer = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan_));
+  const auto synthesizer = cpu_engine::LoadCpuSynthesizer(CheckpointFolder(plan_));
   ASSERT_THAT(synthesizer, IsOk());
   const engine::ModelDescription& model = (*synthesizer)->description();
   EXPECT_EQ(model.classes, dataset_.classes);
@@ -145,7 +145,7 @@ TEST_F(RunTest, RejectsTheCheckpointOfAnotherModel) {
 TEST_F(RunTest, SamplingGeneratorWritesACheckpointThatAnswers) {
   plan_.options = SmallFlowOptions();
   ASSERT_THAT(Go(), IsOk());
-  const auto synthesizer = torch_engine::LoadTorchSynthesizer(CheckpointFolder(plan_));
+  const auto synthesizer = cpu_engine::LoadCpuSynthesizer(CheckpointFolder(plan_));
   ASSERT_THAT(synthesizer, IsOk());
   EXPECT_TRUE((*synthesizer)->description().samples);
   EXPECT_TRUE((*synthesizer)->description().partner_direction.has_value());

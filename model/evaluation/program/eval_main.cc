@@ -7,7 +7,6 @@
 #include "model/base/program_output.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/network/exceptions.h"
-#include "model/torch_engine/torch_synthesizer.h"
 
 namespace {
 
@@ -18,7 +17,7 @@ int Run(int argc, char** argv) {
   duet::evaluation::program::AddCommands(&app, &chosen);
   if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
   const absl::Status status = duet::network::CatchExceptions([&chosen] {
-    absl::Status prepared = duet::torch_engine::SetTorchThreads(1);
+    absl::Status prepared = duet::network::SetThreads(1);
     return prepared.ok() ? chosen() : prepared;
   });
   if (status.ok()) return 0;

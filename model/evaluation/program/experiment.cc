@@ -14,9 +14,10 @@
 #include "absl/strings/str_join.h"
 #include "model/base/status_macros.h"
 #include "model/base/text.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
+#include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/clips_together.h"
-#include "model/torch_engine/torch_synthesizer.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -196,15 +197,16 @@ absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const fs::path& run) {
 }
 
 absl::StatusOr<std::vector<FoldModel>> OpenModels(const ExperimentFlags& flags) {
-  const engine::PipelineOptions options{flags.as_served, flags.as_served, flags.as_served};
+  const cpu_engine::CpuEngineOptions options{{flags.as_served, flags.as_served, flags.as_served},
+                                             cpu_engine::kernels::Precision::kFloat32};
   std::vector<FoldModel> models;
   if (flags.embedded || !flags.checkpoint.empty()) {
     SharedSynthesizer one;
     if (flags.embedded) {
-      DUET_TRY(auto all, torch_engine::LoadEmbeddedSynthesizers(options));
+      DUET_TRY(auto all, cpu_engine::LoadEmbeddedSynthesizers(options));
       one = std::move(all.front());
     } else {
-      DUET_TRY(one, torch_engine::LoadTorchSynthesizer(flags.checkpoint, options));
+      DUET_TRY(one, cpu_engine::LoadCpuSynthesizer(flags.checkpoint, options));
     }
     models.push_back({"duet", [one](const std::string&) { return one; }, flags.asked});
   }
@@ -214,7 +216,7 @@ absl::StatusOr<std::vector<FoldModel>> OpenModels(const ExperimentFlags& flags) 
                       [folder = runs.folder,
                        options](const std::string& subject) -> absl::StatusOr<SharedSynthesizer> {
                         DUET_TRY(const auto checkpoint, ReadRunCheckpoint(folder / subject));
-                        return torch_engine::MakeTorchSynthesizer(checkpoint, options);
+                        return cpu_engine::MakeCpuSynthesizer(checkpoint, options);
                       },
                       flags.asked});
   }

@@ -1,4 +1,4 @@
-#include "model/torch_engine/torch_synthesizer.h"
+#include "model/cpu_engine/cpu_synthesizer.h"
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,7 @@
 #include "tests/support/sample_motion.h"
 #include "tests/support/tiny_checkpoint.h"
 
-namespace duet::torch_engine {
+namespace duet::cpu_engine {
 namespace {
 
 using test::SwayingMotion;
@@ -20,7 +20,6 @@ using test::TinyCheckpoint;
 constexpr int kPaper = 1, kSampling = 3;  // versions of sbu
 
 std::shared_ptr<const engine::Synthesizer> EmbeddedModel(const std::string& name, int version) {
-  EXPECT_THAT(SetTorchThreads(1), IsOk());
   auto all = LoadEmbeddedSynthesizers();
   EXPECT_THAT(all, IsOk());
   if (!all.ok()) return nullptr;
@@ -70,7 +69,7 @@ float LargestDistance(const motion::Poses& a, const motion::Poses& b) {
   return largest;
 }
 
-TEST(TorchSynthesizerTest, DefaultModelSamplesAndHasLeaderStatistics) {
+TEST(CpuSynthesizerTest, DefaultModelSamplesAndHasLeaderStatistics) {
   const auto all = LoadEmbeddedSynthesizers();
   ASSERT_THAT(all, IsOk());
   const engine::ModelDescription& model = all->front()->description();
@@ -80,7 +79,7 @@ TEST(TorchSynthesizerTest, DefaultModelSamplesAndHasLeaderStatistics) {
   EXPECT_TRUE(model.partner_direction.has_value());
 }
 
-TEST(TorchSynthesizerTest, AnswerDependsOnTheSeedUnlessVarietyIsZero) {
+TEST(CpuSynthesizerTest, AnswerDependsOnTheSeedUnlessVarietyIsZero) {
   const auto model = Embedded(kSampling);
   const auto answer = [&](uint64_t seed, float variety) {
     engine::SynthesisWindow window = MakeWindow(*model, 20);
@@ -92,7 +91,7 @@ TEST(TorchSynthesizerTest, AnswerDependsOnTheSeedUnlessVarietyIsZero) {
   EXPECT_EQ(answer(7, 0), answer(8, 0));
 }
 
-TEST(TorchSynthesizerTest, EverydayAndSalsaAreFreeForAllUses) {
+TEST(CpuSynthesizerTest, EverydayAndSalsaAreFreeForAllUses) {
   const auto all = LoadEmbeddedSynthesizers();
   ASSERT_THAT(all, IsOk());
   std::vector<std::string> free;
@@ -108,7 +107,7 @@ TEST(TorchSynthesizerTest, EverydayAndSalsaAreFreeForAllUses) {
   EXPECT_THAT(free, ::testing::ElementsAre("everyday", "salsa"));
 }
 
-TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
+TEST(CpuSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
   for (const int version : {kPaper, kSampling}) {
     const auto model = Embedded(version);
     const std::vector<engine::SynthesisWindow> windows = {
@@ -122,7 +121,7 @@ TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {
   }
 }
 
-TEST(TorchSynthesizerTest, MovesAndTurnsWithTheLeader) {
+TEST(CpuSynthesizerTest, MovesAndTurnsWithTheLeader) {
   const auto model = Embedded();
   engine::SynthesisWindow window = MakeWindow(*model, 20);
   window.start = engine::FollowerStart{{0.3f, 1, 1}, {}};
@@ -136,7 +135,7 @@ TEST(TorchSynthesizerTest, MovesAndTurnsWithTheLeader) {
   EXPECT_LT(LargestDistance(RunOne(*model, window), expected), 1e-4f);
 }
 
-TEST(TorchSynthesizerTest, FollowerStartsAtItsGivenStart) {
+TEST(CpuSynthesizerTest, FollowerStartsAtItsGivenStart) {
   const auto model = Embedded();
   engine::SynthesisWindow window = MakeWindow(*model, 30);
   const int root = model->description().skeleton.root;
@@ -147,13 +146,12 @@ TEST(TorchSynthesizerTest, FollowerStartsAtItsGivenStart) {
   }
 }
 
-TEST(TorchSynthesizerTest, NonFiniteResultFailsOnlyItsWindow) {
+TEST(CpuSynthesizerTest, NonFiniteResultFailsOnlyItsWindow) {
   checkpoint::Checkpoint checkpoint = TinyCheckpoint();
   for (checkpoint::Tensor& tensor : checkpoint.tensors) {
     for (float& value : tensor.values) value = 3e38f;  // finite, but the result is not
   }
-  const auto model = MakeTorchSynthesizer(checkpoint);
-  ASSERT_THAT(model, IsOk());
+  const auto model = MakeCpuSynthesizer(checkpoint);
   engine::SynthesisWindow window;
   window.leader = motion::Poses(4, checkpoint.manifest.model.skeleton.joint_count());
   float along = 0;
@@ -162,28 +160,14 @@ TEST(TorchSynthesizerTest, NonFiniteResultFailsOnlyItsWindow) {
     ++along;
   }
   window.labels.assign(4 * checkpoint.manifest.model.classes.size(), 1);
-  const std::vector<engine::WindowResult> results = SynthesizeAll(**model, {window});
+  const std::vector<engine::WindowResult> results = SynthesizeAll(*model, {window});
   EXPECT_THAT(results[0], StatusIs(absl::StatusCode::kInternal, HasSubstr("not finite")));
 }
 
-TEST(TorchNetworkTest, ExceptionsBecomeAStatus) {
-  const auto network = MakeTorchNetwork(TinyCheckpoint());
-  ASSERT_THAT(network, IsOk());
-  // A leader of one joint, although the parts need three: LibTorch throws.
-  engine::NetworkInput input;
-  input.leader = motion::Poses(2, 1);
-  EXPECT_THAT((*network)->Run({input}),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("the network failed: ")));
-}
-
-TEST(TorchSynthesizerTest, CheckpointOfOtherShapesIsRejected) {
-  checkpoint::Checkpoint checkpoint = TinyCheckpoint();
-  checkpoint.tensors[0].shape[0] += 1;
-  EXPECT_THAT(MakeTorchSynthesizer(checkpoint),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(checkpoint.tensors[0].name)));
-  EXPECT_THAT(LoadTorchSynthesizer("/nowhere/at/all"),
+TEST(CpuSynthesizerTest, MissingFolderIsNamed) {
+  EXPECT_THAT(LoadCpuSynthesizer("/nowhere/at/all"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("/nowhere/at/all")));
 }
 
 }  // namespace
-}  // namespace duet::torch_engine
+}  // namespace duet::cpu_engine
