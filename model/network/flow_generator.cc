@@ -6,7 +6,6 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_replace.h"
 #include "model/network/batch.h"
 
 namespace duet::network {
@@ -86,7 +85,7 @@ FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
       heads_(FlowOf(manifest).heads),
       reach_(FlowOf(manifest).reach) {
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
-    by_name_[spec.name] = Add(spec.name, spec.shape);
+    Add(spec.name, InitialValue(spec.name, spec.shape), !IsMeasured(spec.name));
   }
   frames_ = FindLinear("frames");
   sample_ = FindLinear("sample");
@@ -100,38 +99,24 @@ FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
   for (int i = 0; i < FlowOf(manifest).blocks; ++i) {
     blocks_.push_back(FindBlock(absl::StrCat("block", i)));
   }
-  base_poses_ = by_name_.at("base.poses");
-  noise_roots_ = by_name_.at("noise.roots");
-}
-
-torch::Tensor FlowGeneratorImpl::Add(const std::string& name, const std::vector<int64_t>& shape) {
-  const torch::Tensor value = InitialValue(name, shape);
-  const std::string plain =
-      absl::StrReplaceAll(name, {{".", "/"}});  // LibTorch does not allow dots
-  return IsMeasured(name) ? register_buffer(plain, value) : register_parameter(plain, value);
+  base_poses_ = Named("base.poses");
+  noise_roots_ = Named("noise.roots");
 }
 
 FlowGeneratorImpl::Linear FlowGeneratorImpl::FindLinear(const std::string& name) const {
-  const auto bias = by_name_.find(name + ".bias");
-  return {by_name_.at(name + ".weight"), bias == by_name_.end() ? torch::Tensor() : bias->second};
+  return {Named(name + ".weight"), Named(name + ".bias")};
 }
 
 FlowGeneratorImpl::Block FlowGeneratorImpl::FindBlock(const std::string& name) const {
   return {FindLinear(name + ".modulation"), FindLinear(name + ".attention"),
           FindLinear(name + ".attended"),   FindLinear(name + ".expand"),
-          FindLinear(name + ".contract"),   by_name_.at(name + ".distance")};
+          FindLinear(name + ".contract"),   Named(name + ".distance")};
 }
 
 void FlowGeneratorImpl::SetMeasured(const torch::Tensor& base_poses,
                                     const torch::Tensor& noise_roots) {
   base_poses_.copy_(base_poses);
   noise_roots_.copy_(noise_roots);
-}
-
-std::map<std::string, torch::Tensor> FlowGeneratorImpl::tensors() const {
-  std::map<std::string, torch::Tensor> views;
-  for (const auto& [name, tensor] : by_name_) views[name] = tensor.detach();
-  return views;
 }
 
 torch::Tensor FlowGeneratorImpl::Dropped(const torch::Tensor& values) const {

@@ -3,13 +3,13 @@
 
 #include <torch/torch.h>
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "absl/types/span.h"
 #include "model/checkpoint/manifest.h"
 #include "model/engine/network.h"
+#include "model/network/parameters.h"
 
 namespace duet::network {
 
@@ -55,7 +55,7 @@ FlowContext Rows(const FlowContext& context, const torch::Tensor& rows);
 // Source:  Lipman et al. 2023 (flow matching), Peebles, Xie 2023 (adaptive norms).
 // Units:   offsets from FlowInput::base, in offset_scale metres.
 // Threads: safe to call concurrently in evaluation mode.
-class FlowGeneratorImpl : public torch::nn::Module {
+class FlowGeneratorImpl : public NamedModule {
  public:
   // Initialises randomly; LoadParameters fills it from a checkpoint. Requires a manifest with a
   // FlowArchitecture.
@@ -78,9 +78,6 @@ class FlowGeneratorImpl : public torch::nn::Module {
   const torch::Tensor& noise_roots() const { return noise_roots_; }
   torch::Device device() const { return base_poses_.device(); }
 
-  // All tensors by their names in ExpectedTensors: views without gradient, to read or to fill.
-  std::map<std::string, torch::Tensor> tensors() const;
-
  private:
   struct Linear {
     torch::Tensor weight;  // [outputs, inputs]
@@ -94,7 +91,6 @@ class FlowGeneratorImpl : public torch::nn::Module {
     torch::Tensor distance;  // [heads, 2 reach + 1]
   };
 
-  torch::Tensor Add(const std::string& name, const std::vector<int64_t>& shape);
   Linear FindLinear(const std::string& name) const;
   Block FindBlock(const std::string& name) const;
   torch::Tensor Dropped(const torch::Tensor& values) const;
@@ -103,7 +99,6 @@ class FlowGeneratorImpl : public torch::nn::Module {
   torch::Tensor Apply(const Block& block, const torch::Tensor& frames,
                       const torch::Tensor& condition, const torch::Tensor& padding) const;
 
-  std::map<std::string, torch::Tensor> by_name_;  // as registered
   bool frame_labels_, hidden_frames_;
   Linear frames_, sample_, start_, label_, time_expand_, time_mix_, condition_, norm_, output_;
   std::vector<Block> blocks_;

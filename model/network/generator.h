@@ -3,45 +3,13 @@
 
 #include <torch/torch.h>
 
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "model/checkpoint/manifest.h"
+#include "model/network/parameters.h"
 
 namespace duet::network {
-
-// The parameters of the paper's generator in their computing layout: both directions in one tensor,
-// forward first, and all slices in one tensor where that is faster. Sizes: E encoder units, S
-// slices, A attention rows, H = S E decoder units, J joints, C classes.
-//
-// Biases and other vectors are flat, [2 x], so that an optimiser can distinguish them from
-// matrices.
-struct GeneratorParameters {
-  struct Slice {
-    torch::Tensor fc_weight;  // [features, input]; undefined without the layer, as fc_bias
-    torch::Tensor fc_bias;    // [features]
-    torch::Tensor weight_ih;  // [2, 4 E, features]
-    torch::Tensor bias;       // [2 4 E]
-  };
-  std::vector<Slice> slices;
-  torch::Tensor encoder_weight_hh;  // [2 S, 4 E, E]: every slice forward, then every slice backward
-
-  struct Decoder {
-    torch::Tensor attention_encoded;  // [2, A, 2 H]
-    torch::Tensor attention_state;    // [2, A, H]
-    torch::Tensor attention_score;    // [2 A]
-    torch::Tensor weight_ih;          // [2, 4 H, 2 H]
-    torch::Tensor weight_hh;          // [2, 4 H, H]
-    torch::Tensor bias;               // [2 4 H]
-  } decoder;
-
-  torch::Tensor output_weight;  // [3 J, 2 H]
-  torch::Tensor output_bias;    // [3 J]
-  torch::Tensor base_weight;    // [3 J, C]; undefined without labels or base pose
-  torch::Tensor base_bias;      // [3 J]; undefined without base pose
-};
 
 // The generator's input for a batch of clips, in the standard coordinates
 // (model/motion/standardise.h).
@@ -60,7 +28,7 @@ struct GeneratorInput {
 // Shapes:  forward returns the follower [N, T, 3 J]; frames past a clip's length are undefined.
 // Units:   metres.
 // Threads: forward is safe to call concurrently in evaluation mode.
-class GeneratorImpl : public torch::nn::Module {
+class GeneratorImpl : public NamedModule {
  public:
   // Initialises randomly; LoadParameters fills it from a checkpoint. Requires a manifest with a
   // PaperArchitecture.
@@ -82,9 +50,6 @@ class GeneratorImpl : public torch::nn::Module {
   // base_pose.
   void SetBasePoses(const torch::Tensor& means);
 
-  // All tensors by their names in ExpectedTensors: views without gradient, to read or to fill.
-  std::map<std::string, torch::Tensor> tensors() const;
-
  private:
   struct Encoded {
     torch::Tensor frames;  // [T, N, S 2 E]: every slice forward, then every slice backward
@@ -92,6 +57,8 @@ class GeneratorImpl : public torch::nn::Module {
     torch::Tensor cell;    // [2, N, S E]
   };
 
+  // A tensor of the decoder in both directions, forward first: [2, ...].
+  torch::Tensor BothDirections(const std::string& name) const;
   torch::Tensor SliceInput(const GeneratorInput& input, size_t slice) const;
   torch::Tensor SliceGates(const GeneratorInput& input, size_t slice,
                            const torch::Tensor& reversed) const;
@@ -103,7 +70,6 @@ class GeneratorImpl : public torch::nn::Module {
 
   std::vector<checkpoint::SliceShape> slice_shapes_;
   std::vector<torch::Tensor> columns_;  // of each part in the leader's [3 J]
-  GeneratorParameters parameters_;
   bool whole_body_reads_leader_;
   bool reads_labels_;
   bool has_start_;

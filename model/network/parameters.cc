@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 
 namespace duet::network {
 namespace {
@@ -13,6 +14,23 @@ std::string ShapeText(at::IntArrayRef shape) {
 }
 
 }  // namespace
+
+std::map<std::string, torch::Tensor> NamedModule::tensors() const {
+  std::map<std::string, torch::Tensor> views;
+  for (const auto& [name, tensor] : by_name_) views[name] = tensor.detach();
+  return views;
+}
+
+void NamedModule::Add(const std::string& name, const torch::Tensor& value, bool is_learnt) {
+  const std::string plain =
+      absl::StrReplaceAll(name, {{".", "/"}});  // LibTorch does not allow dots
+  by_name_[name] = is_learnt ? register_parameter(plain, value) : register_buffer(plain, value);
+}
+
+torch::Tensor NamedModule::Named(const std::string& name) const {
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? torch::Tensor() : found->second;
+}
 
 absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
                          std::map<std::string, torch::Tensor> wanted) {

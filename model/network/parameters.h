@@ -12,6 +12,22 @@
 
 namespace duet::network {
 
+// A module whose tensors have the names of ExpectedTensors.
+class NamedModule : public torch::nn::Module {
+ public:
+  // All tensors by name: views without gradient, to read or to fill.
+  std::map<std::string, torch::Tensor> tensors() const;
+
+ protected:
+  // Registers a tensor: learnt, or a constant of the training data.
+  void Add(const std::string& name, const torch::Tensor& value, bool is_learnt = true);
+  // Undefined if there is none of that name.
+  torch::Tensor Named(const std::string& name) const;
+
+ private:
+  std::map<std::string, torch::Tensor> by_name_;  // as registered
+};
+
 // Copies a checkpoint's tensors into `tensors`, views of those of a generator with the same
 // manifest. INVALID_ARGUMENT names a tensor that is missing or has another shape.
 absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
