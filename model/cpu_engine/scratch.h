@@ -2,7 +2,7 @@
 #define DUET_MODEL_CPU_ENGINE_SCRATCH_H_
 
 #include <cstddef>
-#include <memory>
+#include <memory_resource>
 #include <type_traits>
 #include <vector>
 
@@ -12,8 +12,7 @@ namespace duet::cpu_engine {
 // same size allocates nothing.
 //
 //   Scratch::Use use(&scratch);
-//   float* gates = use.Take<float>(rows * 160);   // not initialised; valid until `use` is
-//   destroyed
+//   float* gates = use.Take<float>(rows * 160);  // not initialised; valid as long as `use`
 //
 // Threads: not safe to call concurrently. Use one per thread.
 class Scratch {
@@ -21,8 +20,12 @@ class Scratch {
   // The memory of one evaluation. At most one exists at a time.
   class Use {
    public:
-    explicit Use(Scratch* scratch) : scratch_(scratch) {}
-    ~Use() { scratch_->Reset(); }
+    explicit Use(Scratch* scratch)
+        : scratch_(scratch), memory_(scratch->bytes_.data(), scratch->bytes_.size()) {}
+    ~Use() {
+      // The next evaluation of this size finds all of its memory in one block.
+      if (taken_ > scratch_->bytes_.size()) scratch_->bytes_ = std::vector<std::byte>(taken_);
+    }
     Use(const Use&) = delete;
     Use& operator=(const Use&) = delete;
 
@@ -30,35 +33,23 @@ class Scratch {
     template <typename T>
     T* Take(std::ptrdiff_t count) {
       static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment);
-      return static_cast<T*>(scratch_->Bytes(static_cast<std::size_t>(count) * sizeof(T)));
+      const std::size_t size = static_cast<std::size_t>(count) * sizeof(T);
+      taken_ += size + kAlignment;
+      return static_cast<T*>(memory_.allocate(size, kAlignment));
     }
 
    private:
+    static constexpr std::size_t kAlignment = 64;
     Scratch* scratch_;
+    std::pmr::monotonic_buffer_resource memory_;
+    std::size_t taken_ = 0;  // with the most that alignment can add
   };
 
   // Bytes held between evaluations.
-  std::size_t bytes() const;
+  std::size_t bytes() const { return bytes_.size(); }
 
  private:
-  static constexpr std::size_t kAlignment = 64;
-  struct Free {
-    void operator()(std::byte* bytes) const;
-  };
-  struct Block {
-    std::unique_ptr<std::byte, Free> bytes;
-    std::size_t size;
-  };
-
-  void* Bytes(std::size_t size);
-  // Replaces several blocks by one of the size that was taken from them, so that the next
-  // evaluation uses one block.
-  void Reset();
-  void Add(std::size_t size);
-
-  std::vector<Block> blocks_;
-  std::size_t used_ = 0;   // of the last block
-  std::size_t taken_ = 0;  // of all blocks
+  std::vector<std::byte> bytes_;
 };
 
 }  // namespace duet::cpu_engine
