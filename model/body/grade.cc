@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/base/angle.h"
 #include "model/motion/capsules.h"
 
 namespace duet::body {
@@ -11,8 +12,6 @@ namespace {
 
 using motion::Vec3;
 using Pose = absl::Span<const Vec3>;
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 Vec3 At(Pose pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
 
@@ -49,7 +48,7 @@ double TwistDegrees(const motion::Skeleton& skeleton, const Body& body, Pose pos
     return way - up * Dot(way, up);
   };
   const Vec3 hips = across(*skeleton.hips), shoulders = across(*body.shoulders);
-  return kDegreesPerRadian *
+  return base::kDegreesPerRadian *
          std::atan2(double{Dot(Cross(hips, shoulders), up)}, double{Dot(hips, shoulders)});
 }
 

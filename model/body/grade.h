@@ -2,6 +2,7 @@
 #define DUET_MODEL_BODY_GRADE_H_
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -43,9 +44,9 @@ class PairMeter {
   // Whether a skeleton has the hips, feet, shoulders and chest that the measures need.
   static bool CanMeasure(const motion::Skeleton& skeleton, const Body& body);
 
-  // `skeleton` and `body` must outlive the meter. Requires CanMeasure.
-  PairMeter(const motion::Skeleton& skeleton, const Body& body, double frame_rate_hz)
-      : skeleton_(skeleton), body_(body), frame_rate_hz_(frame_rate_hz) {}
+  // Requires CanMeasure.
+  PairMeter(motion::Skeleton skeleton, Body body, double frame_rate_hz)
+      : skeleton_(std::move(skeleton)), body_(std::move(body)), frame_rate_hz_(frame_rate_hz) {}
 
   // The measures of the next frame. The first frame has no speeds. Shapes: leader, follower
   // [joints].
@@ -58,8 +59,8 @@ class PairMeter {
   Feet FeetOf(absl::Span<const motion::Vec3> pose) const;
   double SlowerFoot(const Feet& before, const Feet& now) const;
 
-  const motion::Skeleton& skeleton_;
-  const Body& body_;
+  motion::Skeleton skeleton_;
+  Body body_;
   double frame_rate_hz_;
   std::optional<Feet> leader_feet_, follower_feet_;  // of the last frame
 };

@@ -27,12 +27,6 @@ constexpr double kEpsilon = 1e-6;
 
 }  // namespace
 
-void ClipGrader::Add(const motion::Poses& leader, const motion::Poses& follower) {
-  for (int t = 0; t < follower.frame_count(); ++t) {
-    sum_.Add(meter_.Add(leader[frames_++], follower[t]));
-  }
-}
-
 ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
     : model_(std::move(model)),
       request_(std::move(request)),
@@ -45,10 +39,11 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
       state_(model_.skeleton.joint_count()),
       body_(body::FindBody(model_.skeleton)),
       cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
-      pin_distances_(request_.pins.size()),
-      grader_(body::PairMeter::CanMeasure(model_.skeleton, body_)
-                  ? std::make_unique<ClipGrader>(model_.skeleton, body_, request_.frame_rate_hz)
-                  : nullptr) {}
+      pin_distances_(request_.pins.size()) {
+  if (body::PairMeter::CanMeasure(model_.skeleton, body_)) {
+    meter_.emplace(model_.skeleton, body_, request_.frame_rate_hz);
+  }
+}
 
 SynthesisWindow ClipSynthesis::NextWindow() const {
   const std::size_t classes = model_.classes.size();
@@ -90,8 +85,7 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   }
   motion::Poses frames = TakeFinalFrames();
   DropFrames();
-  MeasurePins(frames);
-  if (grader_) grader_->Add(request_.leader, frames);
+  Measure(frames);
   return frames;
 }
 
@@ -119,8 +113,11 @@ motion::Pins ClipSynthesis::PinsOfWindow(int first) const {
   return pins;
 }
 
-void ClipSynthesis::MeasurePins(const motion::Poses& frames) {
+void ClipSynthesis::Measure(const motion::Poses& frames) {
   const int first = next_frame_ - frames.frame_count();
+  for (int t = 0; meter_ && t < frames.frame_count(); ++t) {
+    grade_.Add(meter_->Add(request_.leader[first + t], frames[t]));
+  }
   for (std::size_t i = 0; i < request_.pins.size(); ++i) {
     const motion::Pin& pin = request_.pins[i];
     const int frame = static_cast<int>(pin.frame) - first;
@@ -130,8 +127,8 @@ void ClipSynthesis::MeasurePins(const motion::Poses& frames) {
 }
 
 std::optional<body::Grade> ClipSynthesis::grade() const {
-  if (HasNextWindow() || !grader_) return std::nullopt;
-  return grader_->Get();
+  if (HasNextWindow() || !meter_) return std::nullopt;
+  return grade_.Get();
 }
 
 motion::Poses ClipSynthesis::TakeFinalFrames() {

@@ -2,7 +2,6 @@
 #define DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,33 +32,6 @@ struct ClipRequest {
   SynthesisOptions options = {};
   // Where joints of the follower must be, in the caller's frames and level world metres.
   motion::Pins pins = {};
-};
-
-// Grades a follower part by part, as its frames become final.
-//
-// Cost:    linear in the frames; keeps one frame.
-// Threads: not safe to call concurrently.
-class ClipGrader {
- public:
-  // Requires body::PairMeter::CanMeasure.
-  ClipGrader(const motion::Skeleton& skeleton, const body::Body& body, double frame_rate_hz)
-      : skeleton_(skeleton), body_(body), meter_(skeleton_, body_, frame_rate_hz) {}
-  // The meter refers to the members before it.
-  ClipGrader(const ClipGrader&) = delete;
-  ClipGrader& operator=(const ClipGrader&) = delete;
-
-  // Adds the frames of the follower after those added before. `leader`: the whole clip. Shapes:
-  // leader [all frames, joints]; follower [frames, joints].
-  void Add(const motion::Poses& leader, const motion::Poses& follower);
-  // Requires at least one frame.
-  body::Grade Get() const { return sum_.Get(); }
-
- private:
-  const motion::Skeleton skeleton_;
-  const body::Body body_;
-  body::PairMeter meter_;
-  body::GradeSum sum_;
-  int frames_ = 0;
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.
@@ -124,7 +96,8 @@ class ClipSynthesis {
   int SettledEnd() const;
   // The pins that concern a window from `first` on, in its frames.
   motion::Pins PinsOfWindow(int first) const;
-  void MeasurePins(const motion::Poses& frames);
+  // Grades the frames that are returned, and measures their pins.
+  void Measure(const motion::Poses& frames);
   motion::Poses TakeFinalFrames();
   // Makes next_frame_, a pose between two frames of the model, the same body again, which splines
   // change, with its feet between those of both frames; not near a pin, where the pin decides.
@@ -148,7 +121,8 @@ class ClipSynthesis {
   std::optional<solver::BodyModel> person_;  // likewise; absent if the skeleton is none of a person
   int next_frame_ = 0;                       // the caller's next frame to hand out
   std::vector<float> pin_distances_;         // [pins]
-  std::unique_ptr<ClipGrader> grader_;       // null if the skeleton lacks joints
+  std::optional<body::PairMeter> meter_;     // absent if the skeleton lacks joints
+  body::GradeSum grade_;
 };
 
 }  // namespace duet::engine
