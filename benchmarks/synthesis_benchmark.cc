@@ -146,8 +146,10 @@ int main(int argc, char** argv) {
     return 1;
   }
   const Models torch = LoadTorchModels();
-  const Models f32 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kFloat32}));
-  const Models int16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kInt16}));
+  const Models f32 =
+      Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({true, Precision::kFloat32}));
+  const Models int16 =
+      Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({true, Precision::kInt16}));
   Register("torch", torch);
   Register("f32", f32);
   Register("int16", int16);

@@ -94,9 +94,9 @@ std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoi
 std::size_t ThreadScratchBytes() { return ThreadScratch().bytes(); }
 
 std::unique_ptr<engine::Synthesizer> MakeCpuSynthesizer(const checkpoint::Checkpoint& checkpoint,
-                                          const CpuEngineOptions& options) {
+                                                        const CpuEngineOptions& options) {
   return MakeSynthesizer(checkpoint.manifest.model, checkpoint.manifest.standardisation,
-                         MakeCpuNetwork(checkpoint, options.precision), options.pipeline,
+                         MakeCpuNetwork(checkpoint, options.precision), options.as_served,
                          checkpoint::CriticOf(checkpoint));
 }
 

@@ -28,7 +28,7 @@ std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoi
 std::size_t ThreadScratchBytes();
 
 struct CpuEngineOptions {
-  engine::PipelineOptions pipeline = {};
+  bool as_served = true;  // see engine::MakeSynthesizer
   kernels::Precision precision = BestPrecision();
 };
 

@@ -125,16 +125,16 @@ constexpr std::size_t kMostTogether = 32;
 class NetworkSynthesizer : public Synthesizer {
  public:
   NetworkSynthesizer(ModelDescription description, motion::StandardOrigin origin,
-                     std::unique_ptr<const Network> network, const PipelineOptions& options,
+                     std::unique_ptr<const Network> network, bool as_served,
                      std::optional<Critic> critic)
       : description_(std::move(description)),
         origin_(origin),
         network_(std::move(network)),
-        options_(options),
+        as_served_(as_served),
         body_(body::FindBody(description_.skeleton)),
         solver_(description_.skeleton, description_.frame_rate_hz),
         judge_(description_.skeleton, std::move(critic)) {
-    description_.clean_up = options.clean_up;
+    description_.clean_up = as_served;
   }
 
   const ModelDescription& description() const override { return description_; }
@@ -278,8 +278,10 @@ class NetworkSynthesizer : public Synthesizer {
     const SynthesisWindow& window = *task.window;
     motion::Poses follower = task.standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
-    if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
-    if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
+    if (as_served_) {
+      KeepLimbLengths(description_, window, &follower);
+      ShareFloor(description_.skeleton, window, &follower);
+    }
     const bool solves = window.options.clean_up.value_or(description_.cleaned_up_by_default()) &&
                         solver_.CanSolve();
     solver::Situation situation{window.leader, window.hidden_frames,
@@ -302,7 +304,7 @@ class NetworkSynthesizer : public Synthesizer {
   ModelDescription description_;
   const motion::StandardOrigin origin_;
   const std::unique_ptr<const Network> network_;
-  const PipelineOptions options_;
+  const bool as_served_;
   const body::Body body_;
   const solver::FollowerSolver solver_;
   const CandidateJudge judge_;
@@ -327,11 +329,10 @@ class GivenFollowers : public Network {
 
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              motion::StandardOrigin origin,
-                                             std::unique_ptr<const Network> network,
-                                             const PipelineOptions& options,
+                                             std::unique_ptr<const Network> network, bool as_served,
                                              std::optional<Critic> critic) {
   return std::make_unique<NetworkSynthesizer>(std::move(description), origin, std::move(network),
-                                              options, std::move(critic));
+                                              as_served, std::move(critic));
 }
 
 std::vector<WindowResult> FinishMotions(const ModelDescription& description,

@@ -17,28 +17,16 @@
 
 namespace duet::engine {
 
-// Stages that a network's result passes before the caller gets it.
-struct PipelineOptions {
-  // Sets the follower's limb lengths in every frame to those of its start, or else of its leader. A
-  // network outputs positions, and captured limbs change their lengths. Off: the network's own
-  // result, for measuring the method.
-  bool keep_limb_lengths = true;
-  // Moves a follower without a start vertically so that its lowest foot is as high as the leader's.
-  bool share_floor = true;
-  // Makes a body of the follower (model/solver), if its model is cleaned up by default.
-  // SynthesisOptions::clean_up overrides both.
-  bool clean_up = true;
-};
-
 // A synthesizer around a network:
 //   WindowStandardisation, Standardise, Network::Run, Standardisation::Invert, CheckFinite,
 //   KeepLimbLengths, ShareFloor, FollowerSolver.
-// `origin`: origin of the standard coordinates in which the network was trained. `critic`: judges
-// several samples of a window, if there is one.
+// `origin`: origin of the standard coordinates in which the network was trained. `as_served`: if
+// false, the stages after CheckFinite are left out, to measure the network's own answers.
+// `critic`: judges several samples of a window, if there is one.
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              motion::StandardOrigin origin,
                                              std::unique_ptr<const Network> network,
-                                             const PipelineOptions& options = {},
+                                             bool as_served = true,
                                              std::optional<Critic> critic = std::nullopt);
 
 // Followers as a server would return them if a network had answered so: with the limb lengths of

@@ -43,7 +43,7 @@ struct Sampling {
 struct SynthesisOptions {
   Sampling sampling;
   // Whether to make a body of the follower (model/solver). Absent: the default of the server or of
-  // the engine's pipeline.
+  // the model (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;
 };
 

@@ -20,7 +20,7 @@ using kernels::Precision;
 
 // The first window of a capture.
 SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelDescription& model,
-                         bool tell_pose) {
+                         bool tell_pose, bool clean_up) {
   const motion::Poses &leader = sequence.pair.leader.poses,
                       &follower = sequence.pair.follower.poses;
   const int frames = std::min(leader.frame_count(), model.window_frames);
@@ -33,6 +33,7 @@ SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelD
     }
   }
   window.partner_direction = sequence.partner_direction;
+  if (!clean_up) window.options.clean_up = false;
   if (tell_pose) {
     window.start = engine::FollowerStart{follower.at(0, model.skeleton.root),
                                          {follower[0].begin(), follower[0].end()}};
@@ -49,11 +50,11 @@ struct Change {
 };
 
 Change ChangeByRounding(const Synthesizer& exact, const Synthesizer& rounded,
-                        const dataset::Dataset& data) {
+                        const dataset::Dataset& data, bool clean_up) {
   Change change;
   for (const dataset::Sequence& sequence : data.sequences) {
     for (const bool tell_pose : {false, true}) {
-      const SynthesisWindow window = WindowOf(sequence, exact.description(), tell_pose);
+      const SynthesisWindow window = WindowOf(sequence, exact.description(), tell_pose, clean_up);
       const SynthesisWindow* const one = &window;
       const auto a = exact.Synthesize({&one, 1}).front(), b = rounded.Synthesize({&one, 1}).front();
       EXPECT_THAT(a, IsOk());
@@ -76,17 +77,15 @@ void ExpectLittleChange(const char* folder, const std::string& name, bool clean_
   if (!path) GTEST_SKIP() << test::kNoData;
   const auto data = dataset::ReadDataset(*path);
   ASSERT_THAT(data, IsOk());
-  engine::PipelineOptions pipeline;
-  pipeline.clean_up = clean_up;
-  const auto exact = LoadEmbeddedSynthesizers({pipeline, Precision::kFloat32});
-  const auto rounded = LoadEmbeddedSynthesizers({pipeline, Precision::kInt16});
+  const auto exact = LoadEmbeddedSynthesizers({true, Precision::kFloat32});
+  const auto rounded = LoadEmbeddedSynthesizers({true, Precision::kInt16});
   ASSERT_THAT(exact, IsOk());
   ASSERT_THAT(rounded, IsOk());
   for (std::size_t i = 0; i < exact->size(); ++i) {
     const engine::ModelDescription& model = (*exact)[i]->description();
     if (model.name != name) continue;
     SCOPED_TRACE(absl::StrCat(model.name, " ", model.version));
-    const Change change = ChangeByRounding(*(*exact)[i], *(*rounded)[i], *data);
+    const Change change = ChangeByRounding(*(*exact)[i], *(*rounded)[i], *data, clean_up);
     EXPECT_LT(change.RelativeError(), 5e-3);
     // The clean-up makes decisions: whether a foot stands, to which side a body moves. A different
     // decision moves a joint by centimetres.

@@ -70,19 +70,18 @@ ModelDescription Sampling(bool samples = true) {
   return description;
 }
 
-std::unique_ptr<Synthesizer> Model(const ModelDescription& description,
-                                   const PipelineOptions& options = {}) {
+std::unique_ptr<Synthesizer> Model(const ModelDescription& description) {
   return MakeSynthesizer(description, motion::StandardOrigin::kFirstFrame,
-                         std::make_unique<RuleNetwork>(ToppleAll), options);
+                         std::make_unique<RuleNetwork>(ToppleAll));
 }
 
-motion::Poses Chain(const Synthesizer& model, int seconds) {
+motion::Poses Chain(const Synthesizer& model, int seconds, bool clean_up = true) {
   ClipRequest request{SwayingMotion(15 * seconds, 15),
                       15,
                       LabelTrack(std::vector<float>(6, 0)),
                       std::nullopt,
                       std::nullopt,
-                      {}};
+                      {{}, clean_up}};
   ClipSynthesis clip(model.description(), std::move(request));
   motion::Poses follower(0, 15);
   while (clip.HasNextWindow()) {
@@ -128,9 +127,7 @@ TEST(CleanUpStage, AChainOfWindowsStaysUprightOnTheFloorAndNear) {
 }
 
 TEST(CleanUpStage, WithoutItTheSameChainTopples) {
-  PipelineOptions options;
-  options.clean_up = false;
-  const Worst worst = WorstOf(Chain(*Model(Sampling(), options), 60));
+  const Worst worst = WorstOf(Chain(*Model(Sampling()), 60, /*clean_up=*/false));
   EXPECT_GT(worst.lean_degrees, 45);
   EXPECT_GT(worst.feet_off_floor, 0.5);
   EXPECT_GT(worst.distance, 4);
@@ -151,16 +148,12 @@ motion::Poses RunOne(const Synthesizer& model, const SynthesisWindow& window) {
 }
 
 TEST(CleanUpStage, DefaultsToModelsThatSample) {
-  PipelineOptions off;
-  off.clean_up = false;
   SynthesisWindow window = Leaning();
-  const motion::Poses plain = RunOne(*Model(Sampling(), off), window);
-  EXPECT_EQ(RunOne(*Model(Sampling(false)), window), plain);
+  const motion::Poses plain = RunOne(*Model(Sampling(false)), window);
   const motion::Poses cleaned = RunOne(*Model(Sampling()), window);
   EXPECT_NE(cleaned, plain);
   window.options.clean_up = true;
   EXPECT_EQ(RunOne(*Model(Sampling(false)), window), cleaned);
-  EXPECT_EQ(RunOne(*Model(Sampling(), off), window), cleaned);
   window.options.clean_up = false;
   EXPECT_EQ(RunOne(*Model(Sampling()), window), plain);
 }

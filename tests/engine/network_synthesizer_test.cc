@@ -32,14 +32,14 @@ using test::SwayingPose;
 using ::testing::HasSubstr;
 
 std::unique_ptr<Synthesizer> Model(
-    std::function<Answer(Inputs)> rule, const PipelineOptions& options = {},
+    std::function<Answer(Inputs)> rule, bool as_served = true,
     ModelDescription description = FakeDescription(),
     motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame) {
   return MakeSynthesizer(std::move(description), origin,
-                         std::make_unique<RuleNetwork>(std::move(rule)), options);
+                         std::make_unique<RuleNetwork>(std::move(rule)), as_served);
 }
 
-const PipelineOptions kAsTheNetworkSays = {false, false, false};
+constexpr bool kAsTheNetworkSays = false;
 
 // The leader, half as large again and half a metre higher.
 Answer LargerAndHigher(Inputs inputs) {

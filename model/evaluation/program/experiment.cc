@@ -197,7 +197,7 @@ absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const fs::path& run) {
 }
 
 absl::StatusOr<std::vector<FoldModel>> OpenModels(const ExperimentFlags& flags) {
-  const cpu_engine::CpuEngineOptions options{{flags.as_served, flags.as_served, flags.as_served},
+  const cpu_engine::CpuEngineOptions options{flags.as_served,
                                              cpu_engine::kernels::Precision::kFloat32};
   std::vector<FoldModel> models;
   if (flags.embedded || !flags.checkpoint.empty()) {

@@ -70,7 +70,7 @@ struct ExperimentFlags {
   std::vector<std::string> runs;  // [NAME=]RUNS each, a model per fold
   std::string checkpoint;         // one model for every fold
   bool embedded = false;          // likewise, the one inside the program
-  bool as_served = false;         // finished as a server finishes them (engine::PipelineOptions)
+  bool as_served = false;         // finished as a server finishes them (engine::MakeSynthesizer)
 
   std::vector<std::string> starts = {"none", "pose"};  // a row of each model for each
   Asked asked;
