@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include "model/solver/geometry.h"
@@ -94,15 +93,6 @@ Poses Minus(Poses a, const Poses& b) {
 }
 
 }  // namespace
-
-bool ModelDescription::IsContact(int label) const {
-  const std::string& label_name = classes[static_cast<std::size_t>(label)];
-  return std::find(touching_classes.begin(), touching_classes.end(), label_name) !=
-             touching_classes.end() ||
-         std::any_of(hand_contacts.begin(), hand_contacts.end(), [&](const HandContact& hands) {
-           return hands.interaction_class == label_name;
-         });
-}
 
 Mixture::Mixture(const ModelDescription& model, const body::Body& body, const NetworkInput& window)
     : frames_(window.leader.frame_count()),

@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 #define DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -76,7 +78,7 @@ struct ModelDescription {
   // the leader's hips face.
   std::optional<DirectionRegression> partner_direction;
 
-  // Whether the synthesizer cleans up at all unless a caller asks for it (PipelineOptions).
+  // Whether the synthesizer cleans up at all unless a caller asks for it (MakeSynthesizer).
   bool clean_up = true;
 
   // The default of SynthesisOptions::clean_up. True for models that sample.
@@ -85,7 +87,13 @@ struct ModelDescription {
   int class_count() const { return static_cast<int>(classes.size()); }
 
   // Whether the class is one of contact: bodies touch, or hands meet.
-  bool IsContact(int label) const;
+  bool IsContact(int label) const {
+    const std::string& label_name = classes[static_cast<std::size_t>(label)];
+    return std::count(touching_classes.begin(), touching_classes.end(), label_name) > 0 ||
+           std::any_of(hand_contacts.begin(), hand_contacts.end(), [&](const HandContact& hands) {
+             return hands.interaction_class == label_name;
+           });
+  }
 };
 
 }  // namespace duet::engine
