@@ -130,7 +130,8 @@ void FlowNoise::LeaveKnown(int known_frames, int frames, float* smooth) const {
   float* const last = smooth + std::ptrdiff_t{known_frames - 1} * width_;
   for (int t = 0; t < frames; ++t) {
     if (t == known_frames - 1) continue;
-    const float share = engine::SmoothCovariance(options_.frame_length, t - known_frames + 1);
+    const double distance = (t - known_frames + 1) / options_.frame_length;
+    const float share = static_cast<float>(std::exp(-0.5 * distance * distance));
     for (int i = 0; i < width_; ++i) smooth[std::ptrdiff_t{t} * width_ + i] -= share * last[i];
   }
   std::fill_n(last, width_, 0.0f);

@@ -44,7 +44,10 @@ class FlowNoise {
   // Of an endless motion. After known frames: what the last of them does not determine.
   Drawn DrawFrames(uint64_t seed, int64_t first, int known_frames, int frames,
                    Scratch::Use* scratch) const;
-  // Subtracts what the last known frame says about every frame. Shapes: smooth [frames, width].
+  // Subtracts what the last known frame says about every frame: the covariance of smooth noise at
+  // their distance, exp(-(distance / length)^2 / 2), times its noise. The window continues from the
+  // known frames, which contain their noise: with the whole noise, every window would add it anew,
+  // and the motion would drift. Shapes: smooth [frames, width].
   void LeaveKnown(int known_frames, int frames, float* smooth) const;
 
   // The deviation of frame `frame`, as a fraction of the full deviation.

@@ -36,9 +36,4 @@ std::vector<float> SmoothingWeights(double length) {
   return normalised;
 }
 
-float SmoothCovariance(double length, int frames) {
-  const double distance = frames / length;
-  return static_cast<float>(std::exp(-0.5 * distance * distance));
-}
-
 }  // namespace duet::engine

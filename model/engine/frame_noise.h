@@ -20,14 +20,6 @@ void FrameUniforms(uint64_t seed, int64_t frame, absl::Span<double> out);
 // d have the covariance exp(-(d / length)^2 / 2), by a weighted sum over the neighbours.
 std::vector<float> SmoothingWeights(double length);
 
-// Returns exp(-(frames / length)^2 / 2): the covariance of smooth noise at frames of a distance.
-//
-// A window of an endless motion continues from known frames, which contain their noise. The noise
-// of the frames after them is therefore what the last known frame's noise does not determine:
-// noise(t) - SmoothCovariance(t - known) noise(known). With the whole noise, every window would add
-// it anew, and the motion would drift.
-float SmoothCovariance(double length, int frames);
-
 }  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_FRAME_NOISE_H_

@@ -80,7 +80,7 @@ torch::Tensor Ramp(const torch::Tensor& known_count, int64_t frames, int ramp_fr
 }
 
 // The noise of windows of an endless motion without what their last known frame determines
-// (engine::SmoothCovariance). Shapes: smooth [N, T, W], known_count [N].
+// (model/cpu_engine/flow_noise.h). Shapes: smooth [N, T, W], known_count [N].
 torch::Tensor LeaveKnown(const torch::Tensor& smooth, const torch::Tensor& known_count,
                          double length) {
   const torch::Tensor last = (known_count - 1).clamp(0).view({-1, 1, 1});
