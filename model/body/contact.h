@@ -11,7 +11,7 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-// How two bodies come together: hands that reach for a partner, surfaces, overlap and touch.
+// How two bodies come together: hands that reach for a partner, overlap and touch.
 
 namespace duet::body {
 
@@ -31,24 +31,6 @@ inline constexpr double kOffersReach = 0.8;
 std::optional<double> OfferedHandDistance(const Body& body, int root,
                                           absl::Span<const motion::Vec3> leader,
                                           absl::Span<const motion::Vec3> follower);
-
-// The surface of a body without its arms, as capsules around its bones. World metres.
-//
-// Threads: const methods are safe to call concurrently.
-class Surface {
- public:
-  Surface(const motion::Skeleton& skeleton, const Body& body);
-
-  // How far a point is from the surface; negative inside. Shapes: pose [joints].
-  double Distance(motion::Vec3 point, absl::Span<const motion::Vec3> pose) const;
-
- private:
-  struct Bone {
-    motion::Bone joints;
-    double radius = 0;
-  };
-  std::vector<Bone> bones_;
-};
 
 // How deeply two bodies overlap. A frame's depth is the largest max(0, r1 + r2 - d) over all pairs
 // of a leader's and a follower's bone, with radii r1 and r2 at a distance d. Less is not always

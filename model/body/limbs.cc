@@ -7,7 +7,6 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
-#include "model/motion/capsules.h"
 
 namespace duet::body {
 namespace {
@@ -176,10 +175,6 @@ std::vector<motion::BodyPart> LimbParts(const Body& body) {
   for (const Limb& arm : body.arms) parts.push_back(PartOf("arm", arm));
   for (const Limb& leg : body.legs) parts.push_back(PartOf("leg", leg));
   return parts;
-}
-
-std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& body) {
-  return motion::CapsuleRadii(skeleton, LimbParts(body));
 }
 
 float LengthOf(const Limb& limb, absl::Span<const Vec3> pose) {

@@ -46,9 +46,6 @@ Body FindBody(const motion::Skeleton& skeleton);
 // Returns arms and legs as parts, in the body's order. They determine the radii of capsules.
 std::vector<motion::BodyPart> LimbParts(const Body& body);
 
-// Returns the radius of each bone's capsule in metres; see motion::CapsuleRadii. Shapes: [bones].
-std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& body);
-
 // Moves a limb's end to `target`, or as close as the limb reaches, by rotating its two bones. The
 // middle joint stays on its side; a limb that is nearly straight bends towards `forward`. Preserves
 // bone lengths. Shapes: pose [joints].

@@ -48,7 +48,6 @@ class FollowerSolver {
   // Whether the skeleton has what Solve needs: hips, feet, two legs and two arms of two bones, and
   // a trunk between them.
   bool CanSolve() const { return trunk_.has_value(); }
-  const body::Body& body() const { return body_; }
 
   // Replaces the first frames of the follower by the given ones, and lets the others leave their
   // difference smoothly.

@@ -15,7 +15,7 @@ namespace {
 
 using motion::Vec3;
 
-constexpr int kNeck = 1, kTorso = 2, kLeftHand = 5, kRightHand = 8;
+constexpr int kTorso = 2, kLeftHand = 5, kRightHand = 8;
 
 // A person who stretches the right hand out to +z, and one who stands opposite.
 motion::Poses Offering() {
@@ -52,19 +52,6 @@ TEST(OfferedHandDistance, AHandThatHangsDoesNotCount) {
   motion::Poses follower = Opposite();
   follower.at(0, kLeftHand) = leader.at(0, kLeftHand);
   EXPECT_GT(Apart(leader, follower).value_or(0), 0.2);
-}
-
-double FromSurface(Vec3 point, const motion::Poses& poses) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  return Surface(skeleton, FindBody(skeleton)).Distance(point, poses[0]);
-}
-
-TEST(Surface, IsNegativeInsideAndGrowsWithTheWay) {
-  const motion::Poses person = test::Puppet();
-  const Vec3 trunk = Lerp(person.at(0, kTorso), person.at(0, kNeck), 0.5f);
-  EXPECT_LT(FromSurface(trunk, person), -0.1);
-  EXPECT_NEAR(FromSurface(trunk + Vec3{0, 0, 0.5f}, person), 0.39, 0.02);
-  EXPECT_NEAR(FromSurface(trunk + Vec3{0, 0, 0.8f}, person), 0.69, 0.02);
 }
 
 TEST(PenetrationTest, MeasuresDepthAndFrequency) {
