@@ -29,16 +29,21 @@ torch::Tensor Length(const torch::Tensor& vectors) {
   return vectors.square().sum(-1).clamp_min(kLengthFloor).sqrt();
 }
 
-// [N, T, B]
-torch::Tensor BoneLengths(const torch::Tensor& motion, const std::vector<motion::Bone>& bones) {
+// Joint indices, on the device of the motion that they select from.
+torch::Tensor Indices(const std::vector<int64_t>& joints, const torch::Tensor& motion) {
+  return torch::tensor(joints).to(motion.device());
+}
+
+// [N, T, B, 3]
+torch::Tensor BoneVectors(const torch::Tensor& motion, const std::vector<motion::Bone>& bones) {
   std::vector<int64_t> parents, children;
   for (const motion::Bone& bone : bones) {
     parents.push_back(bone.parent);
     children.push_back(bone.child);
   }
   const torch::Tensor joints = Joints(motion);
-  return Length(joints.index_select(2, torch::tensor(children)) -
-                joints.index_select(2, torch::tensor(parents)));
+  return joints.index_select(2, Indices(children, motion)) -
+         joints.index_select(2, Indices(parents, motion));
 }
 
 // [N, T - gap]: the sum of the distances that the joints move in `gap` frames.
@@ -64,10 +69,11 @@ torch::Tensor BoneLoss(const torch::Tensor& predicted, const torch::Tensor& real
                        const torch::Tensor& lengths, const std::vector<motion::Bone>& bones) {
   // Bones of padding have length 0: divide by 1 instead.
   const torch::Tensor mask = Mask(real, lengths);
-  const torch::Tensor wanted = BoneLengths(real, bones);
+  const torch::Tensor wanted = Length(BoneVectors(real, bones));
   const torch::Tensor divisor =
       torch::where(mask.unsqueeze(2) > 0, wanted, torch::ones_like(wanted));
-  return FrameMean(((BoneLengths(predicted, bones) - wanted) / divisor).abs().sum(-1), mask);
+  return FrameMean(((Length(BoneVectors(predicted, bones)) - wanted) / divisor).abs().sum(-1),
+                   mask);
 }
 
 torch::Tensor ContinuityLoss(const torch::Tensor& predicted, const torch::Tensor& lengths,
@@ -105,8 +111,7 @@ constexpr int64_t kBlockStride = 2;
 
 // Mean over the valid frames of values [N, T].
 torch::Tensor MeanOverFrames(const torch::Tensor& values, const torch::Tensor& lengths) {
-  const torch::Tensor valid = FrameMask(lengths, values.size(1)).transpose(0, 1).to(values.dtype());
-  return (values * valid).sum(1) / lengths.clamp_min(1);
+  return (values * Mask(values, lengths)).sum(1) / lengths.clamp_min(1);
 }
 
 // Differences along the frames, the second-to-last dimension.
@@ -124,11 +129,6 @@ torch::Tensor Blocks(const torch::Tensor& motion, int64_t frames) {
   return blocks / std::sqrt(static_cast<double>(frames));
 }
 
-// Joint indices, on the device of the motion that they select from.
-torch::Tensor Indices(const std::vector<int64_t>& joints, const torch::Tensor& motion) {
-  return torch::tensor(joints).to(motion.device());
-}
-
 torch::Tensor PairOf(const torch::Tensor& motion, const motion::JointPair& pair) {
   return Joints(motion).index_select(-2, Indices({pair.left, pair.right}, motion));
 }
@@ -136,13 +136,6 @@ torch::Tensor PairOf(const torch::Tensor& motion, const motion::JointPair& pair)
 // Vectors whose length approaches 1 where they are much longer than `scale`.
 torch::Tensor Saturated(const torch::Tensor& vectors, double scale) {
   return vectors / (vectors.square().sum(-1, true) + scale * scale).sqrt();
-}
-
-torch::Tensor BoneLengths(const torch::Tensor& motion, const torch::Tensor& parents,
-                          const torch::Tensor& children) {
-  const torch::Tensor joints = Joints(motion);
-  const torch::Tensor along = joints.index_select(2, children) - joints.index_select(2, parents);
-  return (along * along).sum(3).add(kSmallest).sqrt();
 }
 
 }  // namespace
@@ -160,15 +153,10 @@ torch::Tensor SquaredDifferenceErrors(const torch::Tensor& predicted, const torc
 torch::Tensor SquaredBoneErrors(const torch::Tensor& predicted, const torch::Tensor& real,
                                 const torch::Tensor& lengths,
                                 const std::vector<motion::Bone>& bones) {
-  std::vector<int64_t> from, to;
-  for (const motion::Bone& bone : bones) {
-    from.push_back(bone.parent);
-    to.push_back(bone.child);
-  }
-  const torch::Tensor parents = Indices(from, real), children = Indices(to, real);
-  const torch::Tensor errors =
-      BoneLengths(predicted, parents, children) - BoneLengths(real, parents, children);
-  return MeanOverFrames(errors.square().mean(2), lengths);
+  const auto lengths_of = [&](const torch::Tensor& motion) {
+    return BoneVectors(motion, bones).square().sum(3).add(kSmallest).sqrt();
+  };
+  return MeanOverFrames((lengths_of(predicted) - lengths_of(real)).square().mean(2), lengths);
 }
 
 torch::Tensor EnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
