@@ -66,11 +66,7 @@ std::vector<bool> StandsByHysteresis(const std::vector<FootState>& states) {
   std::vector<bool> standing;
   bool now = states[0].speed < (kSlow + kFast) / 2 && states[0].height < kHigh;
   for (const FootState& state : states) {
-    if (now) {
-      now = state.speed < kFast && state.height < kHigh;
-    } else {
-      now = state.speed < kSlow && state.height < kLow;
-    }
+    now = state.speed < (now ? kFast : kSlow) && state.height < (now ? kHigh : kLow);
     standing.push_back(now);
   }
   return standing;
@@ -239,7 +235,7 @@ class Foot {
   void Step(int t) {
     Swing swing{t - 1, t - 1 + static_cast<int>(std::lround(Frames(kStepSeconds))), place_, {}};
     if (swings_[At(t)]) swing.end = std::max(LandingAfter(t), t + 1);
-    Aim(&swing);
+    swing.target = PlaceAt(swing.end);
     step_ = swing;
   }
 
@@ -327,7 +323,6 @@ class Foot {
     }
     return false;
   }
-  void Aim(Swing* swing) const { swing->target = PlaceAt(swing->end); }
 
   void Start(int given) {
     if (given == 0) {
@@ -358,7 +353,7 @@ class Foot {
           (wanted_[At(given - 1)] - wanted_[At(given - 2)]) - (Wanted(given) - Wanted(given - 1));
     }
     swing.arches = false;
-    Aim(&swing);
+    swing.target = PlaceAt(swing.end);
     step_ = swing;
   }
 
