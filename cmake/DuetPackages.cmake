@@ -30,7 +30,6 @@ if(DUET_TRAINING)
   # LibTorch uses any installed libblas. The reference implementation is 30 to 60 times slower, so
   # OpenBLAS is linked by name.
   find_library(DUET_OPENBLAS openblas PATH_SUFFIXES openblas-openmp REQUIRED)
-  find_path(DUET_CBLAS_INCLUDE_DIR cblas.h PATH_SUFFIXES openblas-openmp REQUIRED)
 
   # LibTorch's headers, only for the few targets that need them.
   add_library(duet_torch INTERFACE)

@@ -5,8 +5,8 @@
 
 #include <utility>
 
-// The recurrent layers of the paper's networks, in float32, and the rows of clips of different
-// lengths in one padded, time-major batch.
+// The recurrent layers of the paper's networks, and the rows of clips of different lengths in one
+// padded, time-major batch.
 namespace duet::network {
 
 // Runs G independent LSTMs of equal size side by side, differentiably.
