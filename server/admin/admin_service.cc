@@ -117,9 +117,6 @@ constexpr metrics::MethodInfo kReload = Method("Reload");
 constexpr metrics::MethodInfo kSetLabel = Method("SetLabel");
 constexpr metrics::MethodInfo kDeleteLabel = Method("DeleteLabel");
 
-// gRPC reads the messages; the listener limits their size.
-constexpr std::size_t kNoRawRequests = 0;
-
 // Returns the fields of a request, for the audit log.
 std::vector<std::pair<std::string, std::string>> ArgumentsOf(
     const google::protobuf::Message& request) {
@@ -171,7 +168,7 @@ class AdminService::Call {
 
 AdminService::AdminService(AdminParts parts)
     : parts_(std::move(parts)),
-      pipeline_(kNoRawRequests, /*client_key=*/"", parts_.observers, *parts_.clock, parts_.guard,
+      pipeline_(/*client_key=*/"", parts_.observers, *parts_.clock, parts_.access,
                 security::Role::kAdmin) {}
 
 template <typename Answer>

@@ -11,7 +11,7 @@
 #include "server/metrics/json_log.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
-#include "server/security/call_guard.h"
+#include "server/security/access_control.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
 
@@ -26,7 +26,7 @@ struct AdminParts {
   const service::Admission* admission = nullptr;  // knows whether the server serves
   metrics::JsonLog* log = nullptr;
   std::vector<metrics::CallObserver*> observers;
-  security::CallGuard guard = security::CallGuard(nullptr);  // decides who may administer
+  const security::AccessControl* access = nullptr;  // decides who may administer: see CallPipeline
   const common::Clock* clock = &common::Clock::Real();
 };
 

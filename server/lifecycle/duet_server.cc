@@ -163,8 +163,8 @@ service::ServiceParts DuetServer::Parts() {
   parts.admission = &admission_;
   parts.transport = &transport_;
   parts.observers = {&metrics_, &log_};
-  parts.guard = security::CallGuard(secrets_->access());
-  parts.limits = Limits(settings_);
+  parts.access = secrets_->access();
+  parts.limits.max_request_bytes = settings_.max_request_bytes();
   parts.reception.timeout_seconds = settings_.receive_timeout_seconds();
   parts.buffered_frames = static_cast<int>(settings_.buffered_frames());
   parts.write_timeout_seconds = settings_.write_timeout_seconds();
@@ -184,7 +184,7 @@ admin::AdminParts DuetServer::AdminParts() {
   parts.admission = &admission_;
   parts.log = &log_;
   parts.observers = {&metrics_};
-  parts.guard = security::CallGuard(secrets_->access());
+  parts.access = secrets_->access();
   return parts;
 }
 

@@ -3,41 +3,54 @@
 #include <openssl/crypto.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
+#include "server/common/error_details.h"
 
 namespace duet::server::security {
 namespace {
 
-using Callers = std::vector<std::shared_ptr<const KnownCaller>>;
-
-// Compares every digest of every caller, found or not, so that the time reveals nothing of the
-// list.
-std::shared_ptr<const KnownCaller> FindByToken(const Callers& callers, const std::string& digest) {
-  std::shared_ptr<const KnownCaller> found;
-  for (const auto& known : callers) {
-    for (const std::string& theirs : known->caller.token_digests) {
-      if (theirs.size() == digest.size() &&
-          CRYPTO_memcmp(theirs.data(), digest.data(), digest.size()) == 0) {
-        found = known;
-      }
-    }
+absl::Status UnknownCaller(const Credentials& credentials) {
+  if (credentials.has_token) {
+    return common::WithInfo(
+        absl::UnauthenticatedError(
+            "authorization: expected \"Bearer TOKEN\" with a token known here, got another"),
+        common::kReasonCredentialsInvalid);
   }
-  return found;
+  if (!credentials.certificate_names.empty()) {
+    return common::WithInfo(absl::PermissionDeniedError(
+                                "expected a client certificate of a listed caller, got another"),
+                            common::kReasonCallerUnknown);
+  }
+  return common::WithInfo(
+      absl::UnauthenticatedError(
+          "expected \"authorization: Bearer TOKEN\" in the call's metadata, or a client "
+          "certificate where the server asks for one, got neither"),
+      common::kReasonCredentialsMissing);
 }
 
-// Names in certificates are not secret.
-std::shared_ptr<const KnownCaller> FindByCertificate(const Callers& callers,
-                                                     const std::vector<std::string>& names) {
-  for (const auto& known : callers) {
-    const std::vector<std::string>& theirs = known->caller.certificate_names;
-    if (std::find_first_of(theirs.begin(), theirs.end(), names.begin(), names.end()) !=
-        theirs.end()) {
-      return known;
-    }
-  }
-  return nullptr;
+// Counts the call.
+absl::Status CheckRate(double calls_per_second, CallerUsage& usage, common::TimePoint now) {
+  const std::optional<double> wait = usage.TakeCall(calls_per_second, now);
+  if (!wait.has_value()) return absl::OkStatus();
+  const std::string limit = absl::StrCat(calls_per_second);
+  absl::Status status = absl::ResourceExhaustedError(
+      absl::StrCat("expected at most ", limit, " calls per second from this caller, got more"));
+  common::AddRetryInfo(status, absl::Seconds(*wait));
+  return common::WithInfo(std::move(status), common::kReasonCallRate,
+                          {{"calls_per_second", limit}});
 }
 
 }  // namespace
+
+absl::Status RoleRefusal(Role role) {
+  return common::WithInfo(absl::PermissionDeniedError(
+                              absl::StrCat("the caller does not have the role ", RoleName(role))),
+                          common::kReasonRoleMissing, {{"role", RoleName(role)}});
+}
 
 std::optional<double> CallerUsage::TakeCall(double per_second, common::TimePoint now) {
   const double most = std::max(1.0, per_second);
@@ -56,36 +69,55 @@ void AccessControl::Replace(std::vector<Caller> callers) {
   auto next = std::make_shared<List>();
   common::MutexLock lock(mutex_);
   std::map<std::string, std::shared_ptr<CallerUsage>> used;
-  for (const auto& known : *list_) used[known->caller.name] = known->usage;
+  for (const KnownCaller& known : *list_) used[known.caller.name] = known.usage;
   for (Caller& caller : callers) {
     std::shared_ptr<CallerUsage>& usage = used[caller.name];
     if (usage == nullptr) usage = std::make_shared<CallerUsage>();
-    next->push_back(std::make_shared<const KnownCaller>(KnownCaller{std::move(caller), usage}));
+    next->push_back({std::move(caller), usage});
   }
   list_ = std::move(next);
 }
 
-AccessControl::Decision AccessControl::Decide(const Credentials& credentials, Role role) const {
+const AccessControl::KnownCaller* AccessControl::Find(const List& callers,
+                                                      const Credentials& credentials) {
+  const KnownCaller* found = nullptr;
+  for (const KnownCaller& known : callers) {
+    if (!credentials.has_token) {
+      // Names in certificates are not secret.
+      const std::vector<std::string>& names = known.caller.certificate_names;
+      if (std::find_first_of(names.begin(), names.end(), credentials.certificate_names.begin(),
+                             credentials.certificate_names.end()) != names.end()) {
+        return &known;
+      }
+      continue;
+    }
+    // Compares every digest of every caller, found or not, so that the time reveals nothing of the
+    // list.
+    for (const std::string& digest : known.caller.token_digests) {
+      if (digest.size() == credentials.token_digest.size() &&
+          CRYPTO_memcmp(digest.data(), credentials.token_digest.data(), digest.size()) == 0) {
+        found = &known;
+      }
+    }
+  }
+  return found;
+}
+
+CallPass AccessControl::Admit(const Credentials& credentials, Role role) const {
   const std::shared_ptr<const List> callers = list();
-  Decision decision;
-  if (credentials.has_token) {
-    decision.caller = FindByToken(*callers, credentials.token_digest);
-    decision.answer = Answer::kWrongToken;
-  } else if (!credentials.certificate_names.empty()) {
-    decision.caller = FindByCertificate(*callers, credentials.certificate_names);
-    decision.answer = Answer::kUnknownCertificate;
+  const KnownCaller* const known = Find(*callers, credentials);
+  if (known == nullptr) {
+    const std::vector<std::string>& names = credentials.certificate_names;
+    return {UnknownCaller(credentials), names.empty() ? "" : names.front()};
   }
-  if (decision.caller == nullptr) return decision;
-  const Caller& caller = decision.caller->caller;
-  decision.answer = Answer::kAllowed;
+  const Caller& caller = known->caller;
+  CallPass pass{absl::OkStatus(), caller.name, /*is_listed=*/true};
   if (caller.roles.count(role) == 0) {
-    decision.answer = Answer::kWrongRole;
+    pass.status = RoleRefusal(role);
   } else if (caller.calls_per_second.has_value()) {
-    const auto wait = decision.caller->usage->TakeCall(*caller.calls_per_second, clock_.Now());
-    decision.retry_seconds = wait.value_or(0);
-    if (wait.has_value()) decision.answer = Answer::kTooManyCalls;
+    pass.status = CheckRate(*caller.calls_per_second, *known->usage, clock_.Now());
   }
-  return decision;
+  return pass;
 }
 
 std::shared_ptr<const AccessControl::List> AccessControl::list() const {

@@ -1,17 +1,13 @@
 #ifndef DUET_SERVER_SECURITY_ACCESS_CONTROL_H_
 #define DUET_SERVER_SECURITY_ACCESS_CONTROL_H_
 
-#include <cstddef>
-#include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
 
@@ -39,7 +35,7 @@ struct Caller {
 
 // The current usage of one caller.
 //
-// Threads: safe to call concurrently. Uses neither gRPC nor abseil.
+// Threads: safe to call concurrently. Uses neither gRPC nor abseil's synchronisation.
 class CallerUsage {
  public:
   // Counts a call and returns nullopt, or returns the seconds to wait if the rate is exceeded. The
@@ -60,31 +56,23 @@ struct Credentials {
   std::vector<std::string> certificate_names;  // of a certificate that TLS has verified
 };
 
-// A caller and its usage. The usage outlives the list that has the caller.
-struct KnownCaller {
-  Caller caller;
-  std::shared_ptr<CallerUsage> usage;
+// Whether a call is allowed, and who makes it.
+struct CallPass {
+  absl::Status status;  // OK, or the reason why the call is rejected
+  // The caller's name in the access file, otherwise the first name in its certificate; empty for an
+  // unknown caller. A rejected caller can have a name, too.
+  std::string name;
+  bool is_listed = false;  // in the access file
 };
+
+// PERMISSION_DENIED: the caller lacks the role.
+absl::Status RoleRefusal(Role role);
 
 // Decides who may do what. The list of callers is replaced as a whole while calls continue.
 //
-// Threads: safe to call concurrently. Uses neither gRPC nor abseil.
+// Threads: safe to call concurrently. Uses neither gRPC nor abseil's synchronisation.
 class AccessControl {
  public:
-  enum class Answer {
-    kAllowed,
-    kNoCredentials,
-    kWrongToken,
-    kUnknownCertificate,  // verified, but of no listed caller
-    kWrongRole,
-    kTooManyCalls,
-  };
-  struct Decision {
-    Answer answer = Answer::kNoCredentials;
-    std::shared_ptr<const KnownCaller> caller;  // null if the caller is unknown
-    double retry_seconds = 0;                   // for kTooManyCalls
-  };
-
   // `clock` outlives the control.
   explicit AccessControl(const common::Clock& clock) : clock_(clock) {}
 
@@ -93,11 +81,22 @@ class AccessControl {
 
   // Identifies the caller, and counts the call if it is allowed. If there is a token, only the
   // token counts: a wrong one is rejected whatever the certificate is.
-  Decision Decide(const Credentials& credentials, Role role) const;
+  //
+  // Errors: UNAUTHENTICATED (no credentials or a wrong token), PERMISSION_DENIED (a certificate of
+  //         no listed caller, or a missing role), RESOURCE_EXHAUSTED with RetryInfo (too many
+  //         calls); each with an ErrorInfo. No error reveals valid credentials.
+  CallPass Admit(const Credentials& credentials, Role role) const;
 
  private:
-  using List = std::vector<std::shared_ptr<const KnownCaller>>;
+  struct KnownCaller {
+    Caller caller;
+    std::shared_ptr<CallerUsage> usage;  // outlives the list
+  };
+  using List = std::vector<KnownCaller>;
+
   std::shared_ptr<const List> list() const;
+  // Null if the list has no such caller.
+  static const KnownCaller* Find(const List& callers, const Credentials& credentials);
 
   const common::Clock& clock_;
   mutable common::Mutex mutex_;

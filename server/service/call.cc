@@ -36,12 +36,6 @@ std::optional<absl::Status> Call::ended_meanwhile() const {
 
 void Call::Refuse(const absl::Status& reason) { EndFrom(State::kHandling, reason); }
 
-std::unique_ptr<CallScope> Call::Answer() {
-  common::MutexLock lock(mutex_);
-  state_ = State::kFinished;
-  return std::move(parts_.scope);
-}
-
 void Call::Run(Stream stream) {
   stream_ = std::move(stream);
   // Weak: work in progress may outlive a finished call, and must not keep it.
@@ -258,27 +252,11 @@ void Call::Finish(const absl::Status& status) {
   parts_.transport->Finish(*scope, status);
 }
 
-namespace {
-
-constexpr std::size_t kFewest = 64;
-
-void RemoveDead(std::vector<std::weak_ptr<Call>>& calls) {
-  const auto dead = [](const std::weak_ptr<Call>& call) { return call.expired(); };
-  calls.erase(std::remove_if(calls.begin(), calls.end(), dead), calls.end());
-}
-
-}  // namespace
-
 void ActiveCalls::Add(const std::shared_ptr<Call>& call) {
   std::optional<absl::Status> ended;
   bool draining = false;
   {
     common::MutexLock lock(mutex_);
-    if (calls_.size() >= look_at_) {
-      RemoveDead(calls_);
-      // Seldom enough to cost each call little, however many are alive.
-      look_at_ = std::max(kFewest, 2 * calls_.size());
-    }
     calls_.push_back(call);
     ended = ended_;
     draining = draining_;
@@ -324,7 +302,8 @@ void ActiveCalls::FinishAborted(double seconds) {
 std::vector<std::shared_ptr<Call>> ActiveCalls::All() {
   std::vector<std::shared_ptr<Call>> alive;
   common::MutexLock lock(mutex_);
-  RemoveDead(calls_);
+  const auto is_dead = [](const std::weak_ptr<Call>& call) { return call.expired(); };
+  calls_.erase(std::remove_if(calls_.begin(), calls_.end(), is_dead), calls_.end());
   alive.reserve(calls_.size());
   for (const std::weak_ptr<Call>& weak : calls_) {
     if (std::shared_ptr<Call> call = weak.lock()) alive.push_back(std::move(call));
@@ -384,14 +363,8 @@ void CallReactor::OnReadDone(bool ok) {
   if (!ok) {
     call->OnNoMessage(context_.IsCancelled());
   } else if (call->OnFirstMessage()) {
-    handle(*this, call, std::move(bytes));
+    handle(call, std::move(bytes));
   }
-}
-
-void CallReactor::Respond(CallScope& scope, grpc::ByteBuffer response) {
-  reply_.Swap(&response);
-  CallPipeline::Report(scope, absl::OkStatus(), context_);
-  StartWriteAndFinish(&reply_, grpc::WriteOptions(), grpc::Status::OK);
 }
 
 void CallReactor::Write(const google::protobuf::Message& reply) {

@@ -58,7 +58,7 @@ class Transport {
 // that ends the call determines its status: a refusal, the end of the source, cancellation, a time
 // limit, shutdown. Later events are ignored.
 //
-//   waiting for the message -> handling it -> refused (Refuse) or answered (Answer), or
+//   waiting for the message -> handling it -> refused (Refuse), or
 //                                             streaming (Run) until the source ends
 //
 // Only the thread that changes the state uses scope and transport, so the transport may be
@@ -99,8 +99,6 @@ class Call final : public std::enable_shared_from_this<Call> {
   std::optional<absl::Status> ended_meanwhile() const;
   // Ends the handling with an error. Everything the call holds is released first.
   void Refuse(const absl::Status& reason);
-  // Ends the handling with one reply, for which the caller closes the returned scope.
-  std::unique_ptr<CallScope> Answer();
   // Ends the handling by streaming replies.
   void Run(Stream stream);
 
@@ -218,9 +216,7 @@ class ActiveCalls {
   int open_ DUET_GUARDED_BY(mutex_) = 0;  // tickets
   bool draining_ DUET_GUARDED_BY(mutex_) = false;
   std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why calls added later end at once
-  std::vector<std::weak_ptr<Call>> calls_ DUET_GUARDED_BY(mutex_);
-  // Number of calls at which ended ones are removed.
-  std::size_t look_at_ DUET_GUARDED_BY(mutex_) = 64;
+  std::vector<std::weak_ptr<Call>> calls_ DUET_GUARDED_BY(mutex_);  // CheckTime removes ended ones
 };
 
 // A gRPC service whose methods receive calls when their headers arrive, and messages as bytes.
@@ -246,8 +242,8 @@ class RawService : public grpc::Service {
 class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                           public Transport {
  public:
-  // Handles the first message: refuses, answers or runs the call.
-  using Handler = std::function<void(CallReactor&, const std::shared_ptr<Call>&, grpc::ByteBuffer)>;
+  // Handles the first message: refuses or runs the call.
+  using Handler = std::function<void(const std::shared_ptr<Call>&, grpc::ByteBuffer)>;
 
   // `calls` outlives the reactor.
   CallReactor(grpc::CallbackServerContext& context, ActiveCalls& calls)
@@ -255,8 +251,6 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
 
   // Reads the first message of an admitted call. A refused call needs only Finish.
   void Receive(std::shared_ptr<Call> call, Handler handle);
-  // Replies with one message, after Call::Answer.
-  void Respond(CallScope& scope, grpc::ByteBuffer response);
 
   void Read() override { StartRead(&request_); }
   void Write(const google::protobuf::Message& reply) override;
@@ -267,8 +261,6 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
   void OnDone() override { delete this; }
-
-  const grpc::CallbackServerContext& context() const { return context_; }
 
  private:
   grpc::CallbackServerContext& context_;

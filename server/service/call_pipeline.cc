@@ -5,74 +5,20 @@
 #include <netinet/in.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <random>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "model/base/request_id.h"
+#include "model/base/sha256.h"
 #include "server/common/error_details.h"
-#include "server/service/refusals.h"
-#include "server/service/wire.h"
 
 namespace duet::server::service {
-
-OpenedCall CallPipeline::Open(const grpc::ServerContextBase& context,
-                              const metrics::MethodInfo& method) const {
-  CallIdentity identity = IdentifyCall(context, client_key_);
-  OpenedCall opened;
-  opened.client = identity.client;
-  opened.scope = std::make_unique<CallScope>(method, std::move(identity), observers_, clock_);
-  security::CallPass pass = guard_.Admit(context, role_);
-  metrics::CallRecord& record = opened.scope->record();
-  record.caller = std::move(pass.name);
-  record.caller_is_listed = pass.is_listed;
-  opened.status = std::move(pass.status);
-  // A listed caller is one client, whatever address it calls from.
-  if (record.caller_is_listed) opened.client = "caller:" + record.caller;
-  return opened;
-}
-
-void CallPipeline::Report(CallScope& scope, const absl::Status& status,
-                          grpc::ServerContextBase& context) {
-  scope.Finish(status);
-  common::AddRetryPushback(status, context);
-  const std::string& traceparent = scope.record().traceparent;
-  if (!traceparent.empty()) context.AddTrailingMetadata("traceparent", traceparent);
-}
-
-absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes, std::size_t max_bytes) const {
-  const std::size_t length = bytes.Length();
-  if (length > max_request_bytes_) return TooLargeRefusal(length, max_request_bytes_);
-  if (length > max_bytes) return LiveMessageTooLargeRefusal(length, max_bytes);
-  return absl::OkStatus();
-}
-
-// By value, so that the bytes are freed as soon as they are parsed.
-// NOLINTNEXTLINE(performance-unnecessary-value-param)
-absl::Status CallPipeline::Read(grpc::ByteBuffer bytes, google::protobuf::Message& request) const {
-  const absl::Status fits = CheckSize(bytes);
-  return fits.ok() ? ParseMessage(std::move(bytes), request) : fits;
-}
-
-CallScope::CallScope(const metrics::MethodInfo& method, CallIdentity identity,
-                     const std::vector<metrics::CallObserver*>& observers,
-                     const common::Clock& clock)
-    : observers_(observers), clock_(clock), begin_(clock.Now()) {
-  record_.method = method;
-  record_.request_id = std::move(identity.request_id);
-  record_.traceparent = std::move(identity.traceparent);
-  record_.peer = std::move(identity.peer);
-  for (metrics::CallObserver* observer : observers_) observer->CallStarted(method);
-}
-
-void CallScope::Finish(const absl::Status& status) {
-  // A caller that has its status has its share as well.
-  record_.status = status;
-  record_.total_seconds = ElapsedSeconds();
-  for (metrics::CallObserver* observer : observers_) observer->CallFinished(record_);
-}
 
 namespace {
 
@@ -84,20 +30,102 @@ std::string Metadata(const grpc::ServerContextBase& context, const std::string& 
   return std::string(found->second.data(), found->second.size());
 }
 
+std::vector<std::string> CertificateNames(const grpc::ServerContextBase& context) {
+  std::vector<std::string> names;
+  const auto authenticated = context.auth_context();
+  if (authenticated == nullptr || !authenticated->IsPeerAuthenticated()) return names;
+  // The subject's alternative names, or its common name if there are none.
+  for (const grpc::string_ref& name : authenticated->GetPeerIdentity()) {
+    names.emplace_back(name.data(), name.size());
+  }
+  return names;
+}
+
+// The token of "Bearer TOKEN"; empty for anything else.
+absl::string_view BearerToken(absl::string_view authorization) {
+  constexpr absl::string_view kScheme = "Bearer ";
+  return absl::StartsWithIgnoreCase(authorization, kScheme) ? authorization.substr(kScheme.size())
+                                                            : absl::string_view();
+}
+
+security::Credentials CredentialsOf(const grpc::ServerContextBase& context) {
+  security::Credentials credentials;
+  credentials.certificate_names = CertificateNames(context);
+  const auto [begin, end] = context.client_metadata().equal_range("authorization");
+  if (begin == end) return credentials;
+  credentials.has_token = true;
+  if (std::next(begin) != end) return credentials;  // several: ambiguous
+  const absl::string_view token = BearerToken({begin->second.data(), begin->second.size()});
+  if (!token.empty()) credentials.token_digest = base::Sha256Hex({token.data(), token.size()});
+  return credentials;
+}
+
+bool IsFromThisMachine(const grpc::ServerContextBase& context) {
+  const std::string peer = context.peer();
+  return absl::StartsWith(peer, "ipv4:127.") || absl::StartsWith(peer, "ipv6:%5B::1%5D:") ||
+         absl::StartsWith(peer, "ipv6:[::1]:") || absl::StartsWith(peer, "unix:");
+}
+
+// Decides like AccessControl::Admit; see CallPipeline.
+security::CallPass Admit(const grpc::ServerContextBase& context, security::Role role,
+                         const security::AccessControl* access) {
+  const security::Credentials credentials = CredentialsOf(context);
+  if (access != nullptr) return access->Admit(credentials, role);
+  const std::vector<std::string>& names = credentials.certificate_names;
+  const bool allowed = role == security::Role::kSynthesise || IsFromThisMachine(context);
+  return {allowed ? absl::OkStatus() : security::RoleRefusal(role),
+          names.empty() ? "" : names.front()};
+}
+
 }  // namespace
 
-CallIdentity IdentifyCall(const grpc::ServerContextBase& context, const std::string& client_key) {
-  CallIdentity identity;
-  identity.request_id = Metadata(context, "x-request-id");
-  if (!base::IsRequestId(identity.request_id)) identity.request_id = NewRequestId();
-  identity.traceparent = Metadata(context, "traceparent");
-  if (!IsTraceparent(identity.traceparent)) identity.traceparent.clear();
-  identity.peer = context.peer();
-  if (!client_key.empty()) identity.client = Metadata(context, client_key);
-  if (identity.client.empty() || identity.client.size() > kMaxClientBytes) {
-    identity.client = ClientOf(identity.peer);
+OpenedCall CallPipeline::Open(const grpc::ServerContextBase& context,
+                              const metrics::MethodInfo& method) const {
+  OpenedCall opened;
+  opened.scope = std::make_unique<CallScope>(method, observers_, clock_);
+  metrics::CallRecord& record = opened.scope->record();
+  record.request_id = Metadata(context, "x-request-id");
+  if (!base::IsRequestId(record.request_id)) record.request_id = NewRequestId();
+  record.traceparent = Metadata(context, "traceparent");
+  if (!IsTraceparent(record.traceparent)) record.traceparent.clear();
+  record.peer = context.peer();
+  security::CallPass pass = Admit(context, role_, access_);
+  record.caller = std::move(pass.name);
+  record.caller_is_listed = pass.is_listed;
+  opened.status = std::move(pass.status);
+  // A listed caller is one client, whatever address it calls from.
+  if (record.caller_is_listed) {
+    opened.client = "caller:" + record.caller;
+    return opened;
   }
-  return identity;
+  if (!client_key_.empty()) opened.client = Metadata(context, client_key_);
+  if (opened.client.empty() || opened.client.size() > kMaxClientBytes) {
+    opened.client = ClientOf(record.peer);
+  }
+  return opened;
+}
+
+void CallPipeline::Report(CallScope& scope, const absl::Status& status,
+                          grpc::ServerContextBase& context) {
+  scope.Finish(status);
+  common::AddRetryPushback(status, context);
+  const std::string& traceparent = scope.record().traceparent;
+  if (!traceparent.empty()) context.AddTrailingMetadata("traceparent", traceparent);
+}
+
+CallScope::CallScope(const metrics::MethodInfo& method,
+                     const std::vector<metrics::CallObserver*>& observers,
+                     const common::Clock& clock)
+    : observers_(observers), clock_(clock), begin_(clock.Now()) {
+  record_.method = method;
+  for (metrics::CallObserver* observer : observers_) observer->CallStarted(method);
+}
+
+void CallScope::Finish(const absl::Status& status) {
+  // A caller that has its status has its share as well.
+  record_.status = status;
+  record_.total_seconds = ElapsedSeconds();
+  for (metrics::CallObserver* observer : observers_) observer->CallFinished(record_);
 }
 
 std::string ClientOf(std::string_view peer) {

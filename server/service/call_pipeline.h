@@ -1,12 +1,8 @@
 #ifndef DUET_SERVER_SERVICE_CALL_PIPELINE_H_
 #define DUET_SERVER_SERVICE_CALL_PIPELINE_H_
 
-#include <google/protobuf/message.h>
 #include <grpcpp/server_context.h>
-#include <grpcpp/support/byte_buffer.h>
 
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,29 +12,13 @@
 #include "absl/status/status.h"
 #include "server/common/clock.h"
 #include "server/metrics/call_record.h"
-#include "server/security/call_guard.h"
+#include "server/security/access_control.h"
 
 namespace duet::server::service {
 
-// Identifies a call in logs and traces.
-struct CallIdentity {
-  std::string request_id;   // the caller's x-request-id, or a generated one
-  std::string traceparent;  // W3C trace context, empty when absent or malformed
-  std::string peer;
-  // Identifies the client for shared limits: the client that a trusted proxy names, or else the
-  // peer's address without its port. Of an IPv6 address, only the network part (/64) is used,
-  // because one machine can have all addresses of its network.
-  std::string client;
-};
-
-// Reads a call's metadata. Malformed values are ignored: a request ID must be one of
-// model/base/request_id.h, and a traceparent must have the W3C format. A call does not fail because
-// of them, because a proxy may have written them.
-//
-// `client_key`: the metadata key in which a trusted proxy names its client; empty if there is none.
-CallIdentity IdentifyCall(const grpc::ServerContextBase& context, const std::string& client_key);
-
 // Returns the client of a gRPC peer string, such as "ipv4:192.0.2.7:4711" or "ipv6:%5B::1%5D:4711".
+// Of an IPv6 address, only the network part (/64) is used, because one machine can have all
+// addresses of its network.
 std::string ClientOf(std::string_view peer);
 
 bool IsTraceparent(std::string_view text);
@@ -59,8 +39,8 @@ double SecondsLeft(const grpc::ServerContextBase& context);
 class CallScope {
  public:
   // `observers` and `clock` outlive the scope.
-  CallScope(const metrics::MethodInfo& method, CallIdentity identity,
-            const std::vector<metrics::CallObserver*>& observers, const common::Clock& clock);
+  CallScope(const metrics::MethodInfo& method, const std::vector<metrics::CallObserver*>& observers,
+            const common::Clock& clock);
 
   // Filled in while the call runs.
   metrics::CallRecord& record() { return record_; }
@@ -78,50 +58,50 @@ class CallScope {
 // A call whose headers have arrived. Its message has not been read.
 struct OpenedCall {
   std::unique_ptr<CallScope> scope;
-  std::string client;   // see CallIdentity; for a caller on the access list, the caller's name
+  // Identifies the client for shared limits: a caller on the access list, else the client that a
+  // trusted proxy names, else the peer's address without its port (ClientOf).
+  std::string client;
   absl::Status status;  // OK, or the guard's error
 };
 
 // The steps that calls of every method have in common.
 //
-// In:   Open, at the headers: identity and scope (from here on the call is counted), guard.
-//       Admission follows, then the message (Call). Read: size -> bounds -> parser.
+// In:   Open, at the headers: identity and scope (from here on the call is counted), access.
+//       Admission follows, then the message (Call).
 // Out:  Report: observers -> trailers, then the status. When a caller receives it, the metrics
 //       already contain the call.
 //
 // Threads: const methods are safe to call concurrently.
 class CallPipeline {
  public:
-  // `client_key`: see IdentifyCall. `role`: required by every
-  // method. All arguments outlive the pipeline and its calls.
-  CallPipeline(std::size_t max_request_bytes, std::string client_key,
-               std::vector<metrics::CallObserver*> observers, const common::Clock& clock,
-               security::CallGuard guard, security::Role role)
-      : max_request_bytes_(max_request_bytes),
-        client_key_(std::move(client_key)),
+  // `client_key`: the metadata key in which a trusted proxy names its client; empty if there is
+  // none. `access`: identifies callers by their certificate and their `authorization: Bearer
+  // TOKEN`; null without an access list: then everybody may synthesise, and callers on this machine
+  // may administer. `role`: required by every method. All arguments outlive the pipeline and its
+  // calls.
+  CallPipeline(std::string client_key, std::vector<metrics::CallObserver*> observers,
+               const common::Clock& clock, const security::AccessControl* access,
+               security::Role role)
+      : client_key_(std::move(client_key)),
         observers_(std::move(observers)),
         clock_(clock),
-        guard_(guard),
+        access_(access),
         role_(role) {}
 
+  // Malformed metadata is ignored: a request ID must be one of model/base/request_id.h, and a
+  // traceparent must have the W3C format. A call does not fail because of them, because a proxy may
+  // have written them.
   OpenedCall Open(const grpc::ServerContextBase& context, const metrics::MethodInfo& method) const;
-
-  // Returns RESOURCE_EXHAUSTED if the message is larger than the server's limit or `max_bytes`.
-  absl::Status CheckSize(const grpc::ByteBuffer& bytes, std::size_t max_bytes = SIZE_MAX) const;
-  // Parses a message. Returns RESOURCE_EXHAUSTED if it is too large, and INVALID_ARGUMENT if it is
-  // malformed or would be too large in memory. Frees `bytes` in any case.
-  absl::Status Read(grpc::ByteBuffer bytes, google::protobuf::Message& request) const;
 
   // Reports a call that ends, and sets its trailers.
   static void Report(CallScope& scope, const absl::Status& status,
                      grpc::ServerContextBase& context);
 
  private:
-  const std::size_t max_request_bytes_;
   const std::string client_key_;
   const std::vector<metrics::CallObserver*> observers_;
   const common::Clock& clock_;
-  const security::CallGuard guard_;
+  const security::AccessControl* const access_;
   const security::Role role_;
 };
 

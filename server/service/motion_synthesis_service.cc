@@ -67,11 +67,11 @@ v1::RequestLimits ToMessage(const RequestLimits& limits) {
   return message;
 }
 
-constexpr metrics::MethodInfo Method(std::string_view name, std::string_view type) {
+constexpr metrics::MethodInfo Info(std::string_view name, std::string_view type) {
   return {MotionSynthesisService::kServiceName, name, type};
 }
-constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
-constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
+
+constexpr std::size_t kAnySize = std::numeric_limits<std::size_t>::max();
 
 // Larger requests are handled on a separate thread, because parsing and validation take 8 ms per
 // MiB. Their memory is returned to the system.
@@ -91,42 +91,75 @@ common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const commo
   return clock.Now() + common::Seconds(seconds);
 }
 
+// The reply of a unary method.
+template <typename Response>
+class OneReply final : public ReplySource {
+ public:
+  explicit OneReply(Response reply) : reply_(std::move(reply)) {}
+
+  absl::Status Start(SourceEvents) override { return absl::OkStatus(); }
+  NextReply Next(metrics::CallRecord&) override {
+    if (std::exchange(sent_, true)) return {nullptr, absl::OkStatus()};
+    return {&reply_, {}};
+  }
+  void Cancel() override {}
+  void Report(metrics::CallRecord&) const override {}
+
+ private:
+  const Response reply_;
+  bool sent_ = false;
+};
+
+template <typename Response>
+Call::Stream StreamOf(Response reply, ShareLease held_bytes) {
+  Call::Stream stream;
+  stream.source = std::make_shared<OneReply<Response>>(std::move(reply));
+  stream.held_bytes = std::move(held_bytes);
+  return stream;
+}
+
 }  // namespace
 
-const MotionSynthesisService::StreamMethod MotionSynthesisService::kSynthesize = {
-    Method("Synthesize", "server_stream"), &MotionSynthesisService::Prepare,
-    std::numeric_limits<std::size_t>::max(), /*needs_room=*/true};
+const MotionSynthesisService::Method MotionSynthesisService::kListModels = {
+    Info("ListModels", "unary"), &MotionSynthesisService::PrepareList, kAnySize,
+    /*takes_place=*/false, /*needs_room=*/false};
+const MotionSynthesisService::Method MotionSynthesisService::kGetModel = {
+    Info("GetModel", "unary"), &MotionSynthesisService::PrepareGet, kAnySize,
+    /*takes_place=*/false, /*needs_room=*/false};
+const MotionSynthesisService::Method MotionSynthesisService::kSynthesize = {
+    Info("Synthesize", "server_stream"), &MotionSynthesisService::Prepare, kAnySize,
+    /*takes_place=*/true, /*needs_room=*/true};
 // A session has a place among the calls for as long as it lasts; its windows always join the queue.
-const MotionSynthesisService::StreamMethod MotionSynthesisService::kSynthesizeLive = {
-    Method("SynthesizeLive", "bidi_stream"), &MotionSynthesisService::PrepareLive,
-    kMaxLiveStartBytes,
-    /*needs_room=*/false};
+const MotionSynthesisService::Method MotionSynthesisService::kSynthesizeLive = {
+    Info("SynthesizeLive", "bidi_stream"), &MotionSynthesisService::PrepareLive, kMaxLiveStartBytes,
+    /*takes_place=*/true, /*needs_room=*/false};
 
 MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
     : parts_(std::move(parts)),
-      pipeline_(parts_.limits.max_request_bytes, parts_.client_key, parts_.observers, *parts_.clock,
-                parts_.guard, security::Role::kSynthesise) {
+      pipeline_(parts_.client_key, parts_.observers, *parts_.clock, parts_.access,
+                security::Role::kSynthesise) {
+  Serve("/duet.v1.MotionSynthesis/ListModels",
+        [this](Context* context) { return Open(context, kListModels); });
+  Serve("/duet.v1.MotionSynthesis/GetModel",
+        [this](Context* context) { return Open(context, kGetModel); });
   Serve("/duet.v1.MotionSynthesis/Synthesize",
-        [this](Context* context) { return OpenStream(context, kSynthesize); });
+        [this](Context* context) { return Open(context, kSynthesize); });
   Serve("/duet.v1.MotionSynthesis/SynthesizeLive",
-        [this](Context* context) { return OpenStream(context, kSynthesizeLive); });
-  ServeUnary<v1::ListModelsRequest>(
-      "/duet.v1.MotionSynthesis/ListModels", kListModels,
-      [this](const v1::ListModelsRequest&) -> absl::StatusOr<v1::ListModelsResponse> {
-        return List();
-      });
-  ServeUnary<v1::GetModelRequest>(
-      "/duet.v1.MotionSynthesis/GetModel", kGetModel,
-      [this](const v1::GetModelRequest& request) { return Get(request); });
+        [this](Context* context) { return Open(context, kSynthesizeLive); });
 }
 
-RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
-                                                        const StreamMethod& method) {
+RawService::Reactor* MotionSynthesisService::Open(Context* context, const Method& method) {
   OpenedCall opened = pipeline_.Open(*context, method.info);
   auto* reactor = new CallReactor(*context, calls_);
-  absl::StatusOr<ShareLease> place = opened.status.ok() ? parts_.admission->Admit(opened.client)
-                                                        : absl::StatusOr<ShareLease>(opened.status);
-  absl::Status admitted = place.status();
+  absl::Status admitted = opened.status;
+  ShareLease place;
+  if (admitted.ok() && method.takes_place) {
+    absl::StatusOr<ShareLease> taken = parts_.admission->Admit(opened.client);
+    admitted = taken.status();
+    if (taken.ok()) place = *std::move(taken);
+  } else if (admitted.ok()) {
+    admitted = parts_.admission->CheckServing();
+  }
   // Places and queue are checked before the request is read. The smaller shares of bulk calls are
   // checked afterwards, because the priority is in the request.
   if (admitted.ok() && method.needs_room) {
@@ -135,54 +168,50 @@ RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
     if (!room.ok()) admitted = QueueRefusal(room);
   }
   if (!admitted.ok()) {
-    place = admitted;  // free again before the caller knows
+    place = ShareLease();  // free again before the caller knows
     reactor->Finish(*opened.scope, admitted);
     return reactor;
   }
-  reactor->Receive(MakeCall(std::move(opened), *std::move(place), *reactor),
-                   [this, &method](CallReactor& received_by, const std::shared_ptr<Call>& call,
-                                   grpc::ByteBuffer bytes) {
-                     Handle(method, {received_by.context(), call, std::move(bytes), {}, nullptr});
-                   });
-  return reactor;
-}
-
-std::shared_ptr<Call> MotionSynthesisService::MakeCall(OpenedCall opened, ShareLease place,
-                                                       CallReactor& reactor) {
   Call::Parts parts;
-  parts.transport = &reactor;
+  parts.transport = reactor;
   parts.admission = parts_.admission;
   parts.clock = parts_.clock;
   parts.limits = parts_.reception;
   parts.scope = std::move(opened.scope);
   parts.client = std::move(opened.client);
   parts.place = std::move(place);
-  std::shared_ptr<Call> call = Call::Create(std::move(parts));
+  const std::shared_ptr<Call> call = Call::Create(std::move(parts));
   calls_.Add(call);
-  return call;
+  reactor->Receive(call, [this, context, &method](const std::shared_ptr<Call>& received_by,
+                                                  grpc::ByteBuffer bytes) {
+    Handle(method, {*context, received_by, std::move(bytes), {}, nullptr});
+  });
+  return reactor;
 }
 
-void MotionSynthesisService::CountIfLarge(const grpc::ByteBuffer& bytes) {
-  if (bytes.Length() >= kLargeRequestBytes) large_request_bytes_ += bytes.Length();
-}
-
-void MotionSynthesisService::Handle(const StreamMethod& method, Received received) {
+void MotionSynthesisService::Handle(const Method& method, Received received) {
   const std::size_t size = received.bytes.Length();
-  CountIfLarge(received.bytes);
-  const absl::Status fits = pipeline_.CheckSize(received.bytes, method.max_request_bytes);
-  absl::StatusOr<ShareLease> held = fits.ok()
-                                        ? parts_.admission->Hold(received.call->client(), size)
-                                        : absl::StatusOr<ShareLease>(fits);
-  if (!held.ok()) return received.call->Refuse(held.status());
-  received.held = *std::move(held);
-  if (size >= kLargeRequestBytes) {
+  const bool is_large = size >= kLargeRequestBytes;
+  if (is_large) large_request_bytes_ += size;
+  const std::size_t limit = parts_.limits.max_request_bytes;
+  if (size > limit) return received.call->Refuse(TooLargeRefusal(size, limit));
+  if (size > method.max_bytes) {
+    return received.call->Refuse(LiveMessageTooLargeRefusal(size, method.max_bytes));
+  }
+  // A full server still describes its models.
+  if (is_large || method.takes_place) {
+    absl::StatusOr<ShareLease> held = parts_.admission->Hold(received.call->client(), size);
+    if (!held.ok()) return received.call->Refuse(held.status());
+    received.held = *std::move(held);
+  }
+  if (is_large) {
     HandleElsewhere(method, std::move(received));
   } else {
     Run(method, std::move(received));
   }
 }
 
-void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, Received received) {
+void MotionSynthesisService::HandleElsewhere(const Method& method, Received received) {
   if (parts_.transport != nullptr) {
     received.transport =
         std::make_shared<TransportQuota::Received>(*parts_.transport, received.bytes.Length());
@@ -198,7 +227,7 @@ void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, Receive
   });
 }
 
-void MotionSynthesisService::Run(const StreamMethod& method, Received received) {
+void MotionSynthesisService::Run(const Method& method, Received received) {
   const std::shared_ptr<Call> call = received.call;
   absl::StatusOr<Call::Stream> stream = (this->*method.prepare)(std::move(received));
   if (!stream.ok()) return call->Refuse(stream.status());
@@ -206,9 +235,8 @@ void MotionSynthesisService::Run(const StreamMethod& method, Received received) 
   call->Run(*std::move(stream));
 }
 
-absl::Status MotionSynthesisService::Parse(Received& received,
-                                           google::protobuf::Message& request) const {
-  absl::Status read = pipeline_.Read(std::move(received.bytes), request);
+absl::Status MotionSynthesisService::Parse(Received& received, google::protobuf::Message& request) {
+  absl::Status read = ParseMessage(std::move(received.bytes), request);
   received.transport = nullptr;
   return read;
 }
@@ -309,56 +337,27 @@ absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareLive(Received receiv
   return stream;
 }
 
-template <typename Request, typename Answer>
-void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodInfo& method,
-                                        Answer answer) {
-  const auto handle = [this, answer](CallReactor& reactor, const std::shared_ptr<Call>& call,
-                                     grpc::ByteBuffer bytes) {
-    CountIfLarge(bytes);
-    absl::StatusOr<ShareLease> held = ShareLease();
-    // A full server still handles requests of ordinary size.
-    if (bytes.Length() >= kLargeRequestBytes) {
-      held = parts_.admission->Hold(call->client(), bytes.Length());
-    }
-    if (!held.ok()) return call->Refuse(held.status());
-    Request request;
-    const absl::Status read = pipeline_.Read(std::move(bytes), request);
-    if (!read.ok()) return call->Refuse(read);
-    const auto answered = answer(request);
-    if (!answered.ok()) return call->Refuse(answered.status());
-    const std::unique_ptr<CallScope> scope = call->Answer();
-    reactor.Respond(*scope, SerializeMessage(*answered));
-  };
-  Serve(path, [this, method, handle](Context* context) -> Reactor* {
-    OpenedCall opened = pipeline_.Open(*context, method);
-    auto* reactor = new CallReactor(*context, calls_);
-    const absl::Status serving =
-        opened.status.ok() ? parts_.admission->CheckServing() : opened.status;
-    if (serving.ok()) {
-      reactor->Receive(MakeCall(std::move(opened), ShareLease(), *reactor), handle);
-    } else {
-      reactor->Finish(*opened.scope, serving);
-    }
-    return reactor;
-  });
-}
-
-v1::ListModelsResponse MotionSynthesisService::List() const {
+absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareList(Received received) {
+  v1::ListModelsRequest request;
+  const absl::Status read = Parse(received, request);
+  if (!read.ok()) return read;
   v1::ListModelsResponse response;
   for (const registry::ServedModel& served : parts_.registry->List()) {
     *response.add_models() = ToMessage(served);
   }
-  return response;
+  return StreamOf(std::move(response), std::move(received.held));
 }
 
-absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
-    const v1::GetModelRequest& request) const {
+absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareGet(Received received) {
+  v1::GetModelRequest request;
+  const absl::Status read = Parse(received, request);
+  if (!read.ok()) return read;
   const absl::StatusOr<registry::ServedModel> found = FindModel(request.model());
   if (!found.ok()) return found.status();
   v1::GetModelResponse response;
   *response.mutable_model() = ToMessage(*found);
   *response.mutable_limits() = ToMessage(parts_.limits);
-  return response;
+  return StreamOf(std::move(response), std::move(received.held));
 }
 
 }  // namespace duet::server::service

@@ -19,7 +19,7 @@
 #include "server/common/clock.h"
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
-#include "server/security/call_guard.h"
+#include "server/security/access_control.h"
 #include "server/service/admission.h"
 #include "server/service/call.h"
 #include "server/service/validator.h"
@@ -54,9 +54,9 @@ struct ServiceParts {
 
 // Implements duet.v1.MotionSynthesis. No method blocks or occupies a gRPC thread for long.
 //
-// Every call passes the CallPipeline and is admitted before its message is read. A call that
-// streams continues with model -> validator -> ReplySource, and lives until its last reply was
-// taken or the caller went away.
+// Every call passes the CallPipeline and is admitted before its message is read. It continues with
+// model -> validator -> ReplySource, and lives until its last reply was taken or the caller went
+// away.
 class MotionSynthesisService final : public RawService {
  public:
   static constexpr char kServiceName[] = "duet.v1.MotionSynthesis";
@@ -92,28 +92,29 @@ class MotionSynthesisService final : public RawService {
     ShareLease held;  // accounts for the bytes until the call ends
     std::shared_ptr<TransportQuota::Received> transport;  // likewise, until they are parsed
   };
-  // A method that streams its replies.
-  struct StreamMethod {
+  struct Method {
     metrics::MethodInfo info;
     // Parses the first message and finds out how to answer it.
     absl::StatusOr<Call::Stream> (MotionSynthesisService::*prepare)(Received received);
-    std::size_t max_request_bytes;  // of the first message, if less than the server's limit
+    std::size_t max_bytes;  // of the first message, if less than the server's limit
+    bool takes_place;       // among the concurrent calls
     // The call is refused while the queue has no room for its first window.
     bool needs_room;
   };
-  static const StreamMethod kSynthesize, kSynthesizeLive;
+  static const Method kListModels, kGetModel, kSynthesize, kSynthesizeLive;
 
   // Opens and admits a call.
-  Reactor* OpenStream(Context* context, const StreamMethod& method);
-  void CountIfLarge(const grpc::ByteBuffer& bytes);
+  Reactor* Open(Context* context, const Method& method);
   // Handles the first message of a call. Large messages are handled on a thread of their own,
   // because they would occupy one of gRPC's few threads.
-  void Handle(const StreamMethod& method, Received received);
-  void HandleElsewhere(const StreamMethod& method, Received received);
-  void Run(const StreamMethod& method, Received received);
+  void Handle(const Method& method, Received received);
+  void HandleElsewhere(const Method& method, Received received);
+  void Run(const Method& method, Received received);
   // Parses the message and frees its bytes.
-  absl::Status Parse(Received& received, google::protobuf::Message& request) const;
-  // StreamMethod::prepare of Synthesize, and of SynthesizeLive.
+  static absl::Status Parse(Received& received, google::protobuf::Message& request);
+  // Method::prepare of each method.
+  absl::StatusOr<Call::Stream> PrepareList(Received received);
+  absl::StatusOr<Call::Stream> PrepareGet(Received received);
   absl::StatusOr<Call::Stream> Prepare(Received received);
   absl::StatusOr<Call::Stream> PrepareLive(Received received);
   // Finds the model that a request selects. `prefix`: precedes the fields in errors, as "start.".

@@ -23,7 +23,6 @@
 #include "model/base/request_id.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/messages/message_text.h"
-#include "server/common/clock.h"
 #include "server/config/load_config.h"
 #include "server/security/secret_files.h"
 #include "server/service/call_pipeline.h"
@@ -38,19 +37,17 @@ namespace {
 
 using server::service::ValidatedRequest;
 
-constexpr std::size_t kMaxRequestBytes = std::size_t{32} << 20;
+constexpr std::size_t kOneSlice = std::size_t{32} << 20;
 // Longer clips are validated only: answering them takes the time of many other inputs.
 constexpr int kMostFramesAnswered = 64;
 constexpr int kCores = 4;
 constexpr char kSource[] = "input";
 
-const server::service::CallPipeline& Pipeline() {
+// Parses a request as the service does.
+absl::Status Read(grpc::ByteBuffer bytes, v1::SynthesizeRequest& request) {
   // protobuf would write a line for each string that is not UTF-8; the server silences it as well.
   google::protobuf::SetLogHandler(nullptr);
-  static const auto* const kPipeline = new server::service::CallPipeline(
-      kMaxRequestBytes, "", {}, server::common::Clock::Real(), server::security::CallGuard(nullptr),
-      server::security::Role::kSynthesise);
-  return *kPipeline;
+  return server::service::ParseMessage(std::move(bytes), request);
 }
 
 // protobuf would write what is wrong with a text to standard error.
@@ -105,8 +102,8 @@ Broken Handle(const v1::SynthesizeRequest& request) {
 
 Broken SynthesisRequest(absl::string_view input) {
   v1::SynthesizeRequest request, in_pieces;
-  const absl::Status read = Pipeline().Read(Received(input, kMaxRequestBytes), request);
-  const absl::Status pieces = Pipeline().Read(Received(input, 5), in_pieces);
+  const absl::Status read = Read(Received(input, kOneSlice), request);
+  const absl::Status pieces = Read(Received(input, 5), in_pieces);
   if (read != pieces) return "whether a request is read depends on how its bytes arrive";
   return read.ok() ? Handle(request) : CheckRefusal(read);
 }
@@ -119,7 +116,7 @@ Broken SynthesisFields(absl::string_view input) {
   google::protobuf::io::ArrayInputStream text(input.data(), static_cast<int>(input.size()));
   if (!parser.Parse(&text, &written)) return "";
   v1::SynthesizeRequest request;
-  const absl::Status read = Pipeline().Read(server::service::SerializeMessage(written), request);
+  const absl::Status read = Read(server::service::SerializeMessage(written), request);
   return read.ok() ? Handle(request) : CheckRefusal(read);
 }
 

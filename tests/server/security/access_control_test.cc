@@ -10,12 +10,15 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/string_view.h"
+#include "server/common/error_details.h"
 #include "tests/server/support/fakes.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::security {
 namespace {
 
-using Answer = AccessControl::Answer;
+constexpr absl::string_view kAllowed = "";
 using std::chrono::milliseconds;
 using test::FakeClock;
 
@@ -29,8 +32,9 @@ Credentials Certificate(const std::string& name) { return {false, "", {name}}; }
 class AccessControlTest : public ::testing::Test {
  protected:
   AccessControlTest() { access_.Replace({Studio(), Farm(), Ops()}); }
-  Answer Ask(const Credentials& credentials, Role role = Role::kSynthesise) const {
-    return access_.Decide(credentials, role).answer;
+  // The reason of the refusal; kAllowed if there is none.
+  std::string Ask(const Credentials& credentials, Role role = Role::kSynthesise) const {
+    return common::ReasonOf(access_.Admit(credentials, role).status);
   }
 
   FakeClock clock_;
@@ -39,53 +43,53 @@ class AccessControlTest : public ::testing::Test {
 
 TEST_F(AccessControlTest, AcceptsEachTokenOfACaller) {
   for (const char* digest : {"digest-1", "digest-2"}) {
-    const AccessControl::Decision decision = access_.Decide(Token(digest), Role::kSynthesise);
-    EXPECT_EQ(decision.answer, Answer::kAllowed);
-    EXPECT_EQ(decision.caller->caller.name, "studio");
+    const CallPass pass = access_.Admit(Token(digest), Role::kSynthesise);
+    EXPECT_THAT(pass.status, IsOk());
+    EXPECT_EQ(pass.name, "studio");
+    EXPECT_TRUE(pass.is_listed);
   }
 }
 
 TEST_F(AccessControlTest, AcceptsANameInACertificate) {
-  EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kAllowed);
-  EXPECT_EQ(Ask({false, "", {"other.example", "farm.example"}}), Answer::kAllowed);
+  EXPECT_EQ(Ask(Certificate("farm.example")), kAllowed);
+  EXPECT_EQ(Ask({false, "", {"other.example", "farm.example"}}), kAllowed);
 }
 
 TEST_F(AccessControlTest, RejectsACallWithoutCredentials) {
-  EXPECT_EQ(Ask({}), Answer::kNoCredentials);
-  EXPECT_EQ(Ask(Token("digest-3")), Answer::kWrongToken);
-  EXPECT_EQ(Ask(Token("")), Answer::kWrongToken);
-  EXPECT_EQ(Ask(Certificate("stranger.example")), Answer::kUnknownCertificate);
+  EXPECT_EQ(Ask({}), common::kReasonCredentialsMissing);
+  EXPECT_EQ(Ask(Token("digest-3")), common::kReasonCredentialsInvalid);
+  EXPECT_EQ(Ask(Token("")), common::kReasonCredentialsInvalid);
+  EXPECT_EQ(Ask(Certificate("stranger.example")), common::kReasonCallerUnknown);
 }
 
 TEST_F(AccessControlTest, TokenOverridesTheCertificate) {
-  EXPECT_EQ(Ask({true, "digest-3", {"farm.example"}}), Answer::kWrongToken);
-  const auto decision = access_.Decide({true, "digest-1", {"farm.example"}}, Role::kSynthesise);
-  EXPECT_EQ(decision.caller->caller.name, "studio");
+  EXPECT_EQ(Ask({true, "digest-3", {"farm.example"}}), common::kReasonCredentialsInvalid);
+  EXPECT_EQ(access_.Admit({true, "digest-1", {"farm.example"}}, Role::kSynthesise).name, "studio");
 }
 
 TEST_F(AccessControlTest, NeitherRoleIncludesTheOther) {
-  EXPECT_EQ(Ask(Token("digest-1"), Role::kAdmin), Answer::kWrongRole);
-  EXPECT_EQ(Ask(Token("digest-ops"), Role::kSynthesise), Answer::kWrongRole);
-  EXPECT_EQ(Ask(Token("digest-ops"), Role::kAdmin), Answer::kAllowed);
+  EXPECT_EQ(Ask(Token("digest-1"), Role::kAdmin), common::kReasonRoleMissing);
+  EXPECT_EQ(Ask(Token("digest-ops"), Role::kSynthesise), common::kReasonRoleMissing);
+  EXPECT_EQ(Ask(Token("digest-ops"), Role::kAdmin), kAllowed);
 }
 
 TEST_F(AccessControlTest, NewListAppliesAtOnce) {
   Caller rotated = Studio();
   rotated.token_digests = {"digest-9"};
   access_.Replace({rotated});
-  EXPECT_EQ(Ask(Token("digest-1")), Answer::kWrongToken);
-  EXPECT_EQ(Ask(Token("digest-9")), Answer::kAllowed);
-  EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kUnknownCertificate);
+  EXPECT_EQ(Ask(Token("digest-1")), common::kReasonCredentialsInvalid);
+  EXPECT_EQ(Ask(Token("digest-9")), kAllowed);
+  EXPECT_EQ(Ask(Certificate("farm.example")), common::kReasonCallerUnknown);
 }
 
 TEST_F(AccessControlTest, NewListKeepsTheUsageOfCallers) {
   Caller limited = Studio();
   limited.calls_per_second = 1;
   access_.Replace({limited});
-  EXPECT_EQ(Ask(Token("digest-1"), Role::kAdmin), Answer::kWrongRole) << "which is no call";
-  EXPECT_EQ(Ask(Token("digest-1")), Answer::kAllowed);
+  EXPECT_EQ(Ask(Token("digest-1"), Role::kAdmin), common::kReasonRoleMissing) << "which is no call";
+  EXPECT_EQ(Ask(Token("digest-1")), kAllowed);
   access_.Replace({limited});
-  EXPECT_EQ(Ask(Token("digest-1")), Answer::kTooManyCalls);
+  EXPECT_EQ(Ask(Token("digest-1")), common::kReasonCallRate);
 }
 
 TEST_F(AccessControlTest, ListCanBeReplacedDuringCalls) {
@@ -93,7 +97,7 @@ TEST_F(AccessControlTest, ListCanBeReplacedDuringCalls) {
   std::vector<std::thread> callers;
   for (int t = 0; t < 3; ++t) {
     callers.emplace_back([&] {
-      for (int i = 0; i < 200; ++i) allowed += Ask(Token("digest-1")) == Answer::kAllowed ? 1 : 0;
+      for (int i = 0; i < 200; ++i) allowed += Ask(Token("digest-1")) == kAllowed ? 1 : 0;
     });
   }
   for (int i = 0; i < 100; ++i) access_.Replace({Studio(), Farm()});

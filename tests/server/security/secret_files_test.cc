@@ -208,8 +208,9 @@ class SecretFilesTest : public ::testing::Test {
     WritePair(first_);
   }
   bool Knows(const std::string& name) const {
-    return files_->access()->Decide({true, base::Sha256Hex(name), {}}, Role::kSynthesise).answer ==
-           AccessControl::Answer::kAllowed;
+    return files_->access()
+        ->Admit({true, base::Sha256Hex(name), {}}, Role::kSynthesise)
+        .status.ok();
   }
   std::string Shown() const {
     return files_->certificates()->current().material->certificate_chain;
