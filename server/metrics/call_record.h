@@ -17,6 +17,14 @@ struct MethodInfo {
   std::string_view type;     // "unary" or "server_stream"
 };
 
+// The windows of a call.
+struct WindowTotals {
+  int windows = 0;
+  double queue_seconds = 0;
+  double compute_seconds = 0;
+  int peak_buffered_frames = 0;
+};
+
 // Describes a finished call.
 struct CallRecord {
   MethodInfo method;
@@ -39,12 +47,9 @@ struct CallRecord {
 
   int frames = 0;  // sent
   int chunks = 0;
-  int windows = 0;
-  int peak_buffered_frames = 0;
+  WindowTotals totals;
   std::optional<double> unfamiliarity;  // of the leader, if the model measures it
   double first_chunk_seconds = -1;      // negative if no chunk was sent
-  double queue_seconds = 0;
-  double compute_seconds = 0;
   double total_seconds = 0;
 };
 

@@ -82,14 +82,14 @@ void JsonLog::CallFinished(const CallRecord& record) {
     fields["clean_up"] = record.clean_up;
     fields["frames"] = record.frames;
     fields["chunks"] = record.chunks;
-    fields["windows"] = record.windows;
-    fields["peak_buffered_frames"] = record.peak_buffered_frames;
+    fields["windows"] = record.totals.windows;
+    fields["peak_buffered_frames"] = record.totals.peak_buffered_frames;
     if (record.first_chunk_seconds >= 0) {
       fields["first_chunk_seconds"] = record.first_chunk_seconds;
     }
     if (record.unfamiliarity) fields["unfamiliarity"] = *record.unfamiliarity;
-    fields["queue_seconds"] = record.queue_seconds;
-    fields["compute_seconds"] = record.compute_seconds;
+    fields["queue_seconds"] = record.totals.queue_seconds;
+    fields["compute_seconds"] = record.totals.compute_seconds;
   }
   fields["total_seconds"] = record.total_seconds;
   Write(severity, "call", fields);

@@ -44,8 +44,10 @@ absl::Status CheckWindow(const engine::WindowResult& result, int frames, int joi
   return absl::OkStatus();
 }
 
-void ReportOptions(const engine::ModelDescription& model, const engine::SynthesisOptions& options,
-                   batching::Priority priority, metrics::CallRecord& record) {
+void ReportCommon(const engine::ModelDescription& model, const engine::SynthesisOptions& options,
+                  batching::Priority priority, const metrics::WindowTotals& totals,
+                  metrics::CallRecord& record) {
+  record.totals = totals;
   record.model = model.name;
   record.version = model.version;
   record.priority = PriorityName(priority);
@@ -55,7 +57,7 @@ void ReportOptions(const engine::ModelDescription& model, const engine::Synthesi
   record.clean_up = *options.clean_up;
 }
 
-ClipReplies::ClipReplies(ClipParts parts, ValidatedRequest request)
+ClipReplies::ClipReplies(ReplyParts parts, ValidatedRequest request)
     : parts_(std::move(parts)),
       options_(request.clip.options),
       priority_(request.priority),
@@ -154,11 +156,8 @@ void ClipReplies::FillChunk(metrics::CallRecord& record) {
 void ClipReplies::FillSummary(const metrics::CallRecord& record) {
   const Stats stats = this->stats();
   v1::SynthesisSummary& summary = *reply_.mutable_summary();
-  summary.set_frame_count(static_cast<uint32_t>(record.frames));
+  FillCommonSummary(record.frames, stats.totals, summary);
   summary.set_chunk_count(static_cast<uint32_t>(record.chunks));
-  summary.set_window_count(static_cast<uint32_t>(stats.windows));
-  summary.set_queue_seconds(stats.queue_seconds);
-  summary.set_compute_seconds(stats.compute_seconds);
   if (stats.unfamiliarity) summary.set_unfamiliarity(*stats.unfamiliarity);
   if (stats.grade) *summary.mutable_grade() = ToMessage(*stats.grade);
   summary.mutable_constraint_metres()->Assign(stats.pin_distances.begin(),
@@ -166,12 +165,8 @@ void ClipReplies::FillSummary(const metrics::CallRecord& record) {
 }
 
 void ClipReplies::Report(metrics::CallRecord& record) const {
-  ReportOptions(parts_.model->description(), options_, priority_, record);
   const Stats stats = this->stats();
-  record.windows = stats.windows;
-  record.queue_seconds = stats.queue_seconds;
-  record.compute_seconds = stats.compute_seconds;
-  record.peak_buffered_frames = stats.peak_buffered_frames;
+  ReportCommon(parts_.model->description(), options_, priority_, stats.totals, record);
   record.unfamiliarity = stats.unfamiliarity;
 }
 
@@ -240,13 +235,14 @@ void ClipReplies::Keep(const absl::Status& status, const motion::Poses& frames,
   common::MutexLock lock(mutex_);
   in_flight_ = false;
   error_ = status;
-  stats_.windows += status.ok() ? 1 : 0;
-  stats_.queue_seconds += timings.queue_seconds;
-  stats_.compute_seconds += timings.compute_seconds;
+  metrics::WindowTotals& totals = stats_.totals;
+  totals.windows += status.ok() ? 1 : 0;
+  totals.queue_seconds += timings.queue_seconds;
+  totals.compute_seconds += timings.compute_seconds;
   ready_.DropFront(taken_);
   taken_ = 0;
   ready_.Append(frames.all());
-  stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, ready_.frame_count());
+  totals.peak_buffered_frames = std::max(totals.peak_buffered_frames, ready_.frame_count());
 }
 
 }  // namespace duet::server::service

@@ -15,6 +15,7 @@
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/synthesizer.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/clock.h"
 #include "server/common/mutex.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/reply_source.h"
@@ -45,20 +46,34 @@ void FillCommonHeader(const engine::ModelDescription& model, const ReplyMapping&
   header.set_clean_up(*options.clean_up ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
 }
 
-// What both report of their options.
-void ReportOptions(const engine::ModelDescription& model, const engine::SynthesisOptions& options,
-                   batching::Priority priority, metrics::CallRecord& record);
+// The same for summaries.
+template <typename Summary>
+void FillCommonSummary(int frames, const metrics::WindowTotals& totals, Summary& summary) {
+  summary.set_frame_count(static_cast<uint32_t>(frames));
+  summary.set_window_count(static_cast<uint32_t>(totals.windows));
+  summary.set_queue_seconds(totals.queue_seconds);
+  summary.set_compute_seconds(totals.compute_seconds);
+}
 
-// What a clip depends on. `scheduler` outlives every window that it is given.
-struct ClipParts {
+// What both report. `options.clean_up` is set.
+void ReportCommon(const engine::ModelDescription& model, const engine::SynthesisOptions& options,
+                  batching::Priority priority, const metrics::WindowTotals& totals,
+                  metrics::CallRecord& record);
+
+// What the replies of a clip or a live session depend on. Pointers outlive the call and its
+// windows.
+struct ReplyParts {
   std::shared_ptr<const engine::Synthesizer> model;
   batching::WindowScheduler* scheduler = nullptr;
+  const common::Clock* clock = nullptr;  // of a live session
+  RequestLimits limits;                  // likewise
   common::TimePoint deadline = common::TimePoint::max();
   std::string client;  // see WindowJob
-  // Required. At least 1. The next window is scheduled only while fewer finished frames than this
-  // wait for the reader.
+  // Required. At least 1. No window of a clip is scheduled, and no message of a session read, while
+  // as many finished frames wait for the reader.
   int buffered_frames = 0;
-  // What decides the bits of a reply besides request and weights (SynthesisHeader).
+  double idle_seconds = 0;  // of a live session: the longest time between two messages
+  // What decides the bits of a clip besides request and weights (SynthesisHeader).
   std::string engine, server_version;
 };
 
@@ -77,7 +92,7 @@ struct ClipParts {
 class ClipReplies final : public ReplySource, public std::enable_shared_from_this<ClipReplies> {
  public:
   // Requires request.clip.options.clean_up to be set.
-  ClipReplies(ClipParts parts, ValidatedRequest request);
+  ClipReplies(ReplyParts parts, ValidatedRequest request);
 
   absl::Status Start(SourceEvents events) override;
   NextReply Next(metrics::CallRecord& record) override;
@@ -88,10 +103,7 @@ class ClipReplies final : public ReplySource, public std::enable_shared_from_thi
   enum class Part { kHeader, kFrames, kEnd };
   enum class Ready { kNothing, kFrames, kAllTaken, kFailed };
   struct Stats {
-    int windows = 0;
-    double queue_seconds = 0;
-    double compute_seconds = 0;
-    int peak_buffered_frames = 0;
+    metrics::WindowTotals totals;
     // Set when every window has been evaluated.
     std::optional<double> unfamiliarity;  // engine::Synthesizer::Unfamiliarity
     std::optional<body::Grade> grade;     // engine::ClipSynthesis::grade
@@ -116,7 +128,7 @@ class ClipReplies final : public ReplySource, public std::enable_shared_from_thi
   void Keep(const absl::Status& status, const motion::Poses& frames,
             const batching::WindowTimings& timings) DUET_EXCLUDES(mutex_);
 
-  const ClipParts parts_;
+  const ReplyParts parts_;
   const engine::SynthesisOptions options_;
   const batching::Priority priority_;
   const ReplyMapping mapping_;

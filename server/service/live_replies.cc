@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/service/clip_replies.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::service {
@@ -47,7 +46,7 @@ absl::Status MalformedMessage(absl::string_view got) {
 
 }  // namespace
 
-LiveReplies::LiveReplies(LiveParts parts, ValidatedLiveStart start)
+LiveReplies::LiveReplies(ReplyParts parts, ValidatedLiveStart start)
     : parts_(std::move(parts)),
       format_(start.reply),
       options_(start.live.options),
@@ -127,22 +126,16 @@ void LiveReplies::FillFrames(metrics::CallRecord& record) {
 void LiveReplies::FillSummary(const metrics::CallRecord& record) {
   sent_summary_ = true;
   v1::LiveSummary& summary = *reply_.mutable_summary();
-  summary.set_frame_count(static_cast<uint32_t>(record.frames));
-  summary.set_window_count(static_cast<uint32_t>(stats_.windows));
-  summary.set_queue_seconds(stats_.queue_seconds);
-  summary.set_compute_seconds(stats_.compute_seconds);
-  summary.set_gap_frames(static_cast<uint32_t>(stats_.gap_frames));
-  summary.set_late_frames(static_cast<uint32_t>(stats_.late_frames));
-  summary.set_skipped_frames(static_cast<uint32_t>(stats_.skipped_frames));
+  FillCommonSummary(record.frames, totals_, summary);
+  summary.set_gap_frames(static_cast<uint32_t>(irregular_.gap));
+  summary.set_late_frames(static_cast<uint32_t>(irregular_.late));
+  summary.set_skipped_frames(static_cast<uint32_t>(irregular_.skipped));
 }
 
 void LiveReplies::Report(metrics::CallRecord& record) const {
-  ReportOptions(parts_.model->description(), options_, batching::Priority::kInteractive, record);
   common::MutexLock lock(mutex_);
-  record.windows = stats_.windows;
-  record.queue_seconds = stats_.queue_seconds;
-  record.compute_seconds = stats_.compute_seconds;
-  record.peak_buffered_frames = stats_.peak_buffered_frames;
+  ReportCommon(parts_.model->description(), options_, batching::Priority::kInteractive, totals_,
+               record);
 }
 
 void LiveReplies::OnMessage(const absl::StatusOr<v1::SynthesizeLiveRequest>& message) {
@@ -220,12 +213,12 @@ absl::Status LiveReplies::AddPoses(int first, motion::Poses poses) {
                      absl::StrCat(first, "; after a longer gap, resume with LiveStart.history"));
   }
   if (late > 0) {
-    stats_.late_frames += late;
+    irregular_.late += late;
     Notify(v1::LIVE_NOTICE_KIND_LATE, first, late);
     poses.DropFront(late);
   }
   if (gap > 0) {
-    stats_.gap_frames += gap;
+    irregular_.gap += gap;
     Notify(v1::LIVE_NOTICE_KIND_GAP_FILLED, next, gap);
     FillGap(gap, poses);
   }
@@ -306,7 +299,7 @@ void LiveReplies::KeepDueFrames() {
     engine::LiveFrames due = live_.TakeDue();
     if (due.poses.frame_count() == 0) return;
     live_.Settle(KeepFrames(std::move(due)));
-    stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, waiting_frames());
+    totals_.peak_buffered_frames = std::max(totals_.peak_buffered_frames, waiting_frames());
   }
 }
 
@@ -349,7 +342,7 @@ batching::WindowJob LiveReplies::NextJob() {
 }
 
 common::TimePoint LiveReplies::WindowDeadline() const {
-  if (stats_.windows > 0) return parts_.deadline;
+  if (totals_.windows > 0) return parts_.deadline;
   return std::min(parts_.deadline, parts_.clock->Now() + common::Seconds(kMaxFirstWaitSeconds));
 }
 
@@ -373,11 +366,11 @@ void LiveReplies::OnWindow(const batching::WindowOutcome& outcome) {
 }
 
 void LiveReplies::Accept(const batching::WindowOutcome& outcome) {
-  stats_.queue_seconds += outcome.timings.queue_seconds;
-  stats_.compute_seconds += outcome.timings.compute_seconds;
+  totals_.queue_seconds += outcome.timings.queue_seconds;
+  totals_.compute_seconds += outcome.timings.compute_seconds;
   const absl::Status status = CheckWindow(outcome.result, window_frames_,
                                           parts_.model->description().skeleton.joint_count());
-  const bool waited_in_vain = stats_.windows == 0 && absl::IsDeadlineExceeded(status) &&
+  const bool waited_in_vain = totals_.windows == 0 && absl::IsDeadlineExceeded(status) &&
                               parts_.clock->Now() < parts_.deadline;
   if (waited_in_vain) {
     return Fail(QueueRefusal(absl::ResourceExhaustedError(
@@ -389,12 +382,12 @@ void LiveReplies::Accept(const batching::WindowOutcome& outcome) {
     window_failed_ = error_.ok();
     return Fail(status);
   }
-  ++stats_.windows;
+  ++totals_.windows;
   live_.Accept(*outcome.result);
-  const int skipped = live_.skipped_frames() - stats_.skipped_frames;
+  const int skipped = live_.skipped_frames() - irregular_.skipped;
   if (skipped > 0) {
     Notify(v1::LIVE_NOTICE_KIND_SKIPPED, live_.next_follower_frame() - skipped, skipped);
-    stats_.skipped_frames += skipped;
+    irregular_.skipped += skipped;
   }
 }
 

@@ -17,23 +17,12 @@
 #include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
+#include "server/service/clip_replies.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/reply_source.h"
 #include "server/service/validator.h"
 
 namespace duet::server::service {
-
-// What a live session depends on. Pointers outlive the session and its windows.
-struct LiveParts {
-  std::shared_ptr<const engine::Synthesizer> model;
-  batching::WindowScheduler* scheduler = nullptr;
-  const common::Clock* clock = nullptr;
-  RequestLimits limits;
-  common::TimePoint deadline = common::TimePoint::max();
-  std::string client;       // see WindowJob
-  double idle_seconds = 0;  // the longest time between two messages
-  int buffered_frames = 0;  // no message is read while more frames wait for the reader
-};
 
 // The replies of SynthesizeLive: header, then frames and notices, then summary.
 //
@@ -47,12 +36,11 @@ struct LiveParts {
 // details for the log.
 //
 // Threads: safe to call concurrently. on_progress runs under no lock. Uses neither gRPC nor
-// abseil's
-//          synchronisation (ARCHITECTURE.md).
+//          abseil's synchronisation (ARCHITECTURE.md).
 class LiveReplies final : public ReplySource, public std::enable_shared_from_this<LiveReplies> {
  public:
   // Requires start.live.options.clean_up to be set.
-  LiveReplies(LiveParts parts, ValidatedLiveStart start);
+  LiveReplies(ReplyParts parts, ValidatedLiveStart start);
 
   // Answers the frames of the history, and begins to read messages.
   absl::Status Start(SourceEvents events) override;
@@ -65,15 +53,11 @@ class LiveReplies final : public ReplySource, public std::enable_shared_from_thi
   void OnDraining() override;
 
  private:
-  // Totals of a session.
-  struct Stats {
-    int windows = 0;
-    double queue_seconds = 0;
-    double compute_seconds = 0;
-    int gap_frames = 0;
-    int late_frames = 0;
-    int skipped_frames = 0;
-    int peak_buffered_frames = 0;
+  // Frames of a session that were not as announced.
+  struct Irregular {
+    int gap = 0;
+    int late = 0;
+    int skipped = 0;
   };
 
   void FillHeader(const metrics::CallRecord& record) DUET_REQUIRES(mutex_);
@@ -108,7 +92,7 @@ class LiveReplies final : public ReplySource, public std::enable_shared_from_thi
   int waiting_frames() const DUET_REQUIRES(mutex_);
   int next_leader_frame() const DUET_EXCLUDES(mutex_);
 
-  const LiveParts parts_;
+  const ReplyParts parts_;
   const ReplyMapping format_;  // of both motions
   const engine::SynthesisOptions options_;
   const int plan_frames_;
@@ -141,7 +125,8 @@ class LiveReplies final : public ReplySource, public std::enable_shared_from_thi
   std::vector<v1::LiveNotice> notices_ DUET_GUARDED_BY(mutex_);
   absl::Status error_ DUET_GUARDED_BY(mutex_);
   bool window_failed_ DUET_GUARDED_BY(mutex_) = false;  // the reason for error_
-  Stats stats_ DUET_GUARDED_BY(mutex_);
+  metrics::WindowTotals totals_ DUET_GUARDED_BY(mutex_);
+  Irregular irregular_ DUET_GUARDED_BY(mutex_);
 };
 
 }  // namespace duet::server::service

@@ -6,7 +6,6 @@
 
 #include "duet/v1/model.pb.h"
 #include "model/engine/live_synthesis.h"
-#include "server/service/clip_replies.h"
 #include "server/service/live_replies.h"
 #include "server/service/refusals.h"
 #include "server/service/wire.h"
@@ -266,16 +265,8 @@ absl::StatusOr<Call::Stream> MotionSynthesisService::Prepare(Received received) 
   const engine::ModelDescription& model = served->model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
-  std::optional<bool>& clean_up = validated->clip.options.clean_up;
-  if (!clean_up.has_value()) clean_up = CleansUp(model);
-  ClipParts parts;
-  parts.model = std::move(served->model);
-  parts.scheduler = parts_.scheduler;
-  parts.deadline = DeadlineOf(received.context, *parts_.clock, parts_.max_call_seconds);
-  parts.client = call.client();
-  parts.buffered_frames = parts_.buffered_frames;
-  if (parts_.engine != nullptr) parts.engine = *parts_.engine;
-  parts.server_version = parts_.version;
+  SetCleanUp(model, validated->clip.options);
+  ReplyParts parts = PartsOf(received, *served, parts_.max_call_seconds);
   Call::Stream stream;
   stream.held_bytes = std::move(received.held);
   stream.deadline = parts.deadline;
@@ -293,15 +284,33 @@ absl::StatusOr<registry::ServedModel> MotionSynthesisService::FindModel(
   return std::get<registry::ServedModel>(std::move(found));
 }
 
-bool MotionSynthesisService::CleansUp(const engine::ModelDescription& model) const {
-  return parts_.clean_up.value_or(model.cleaned_up_by_default());
+ReplyParts MotionSynthesisService::PartsOf(const Received& received,
+                                           const registry::ServedModel& served,
+                                           double max_seconds) const {
+  ReplyParts parts;
+  parts.model = served.model;
+  parts.scheduler = parts_.scheduler;
+  parts.clock = parts_.clock;
+  parts.limits = parts_.limits;
+  parts.deadline = DeadlineOf(received.context, *parts_.clock, max_seconds);
+  parts.client = received.call->client();
+  parts.buffered_frames = parts_.buffered_frames;
+  parts.idle_seconds = parts_.live_idle_seconds;
+  if (parts_.engine != nullptr) parts.engine = *parts_.engine;
+  parts.server_version = parts_.version;
+  return parts;
+}
+
+void MotionSynthesisService::SetCleanUp(const engine::ModelDescription& model,
+                                        engine::SynthesisOptions& options) const {
+  if (options.clean_up.has_value()) return;
+  options.clean_up = parts_.clean_up.value_or(model.cleaned_up_by_default());
 }
 
 // The bytes are released before the session starts: the session keeps the history that it needs,
 // and nothing else.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareLive(Received received) {
-  Call& call = *received.call;
   v1::SynthesizeLiveRequest request;
   const absl::Status read = Parse(received, request);
   if (!read.ok()) return read;
@@ -317,19 +326,9 @@ absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareLive(Received receiv
   absl::StatusOr<ValidatedLiveStart> valid =
       ValidateLiveStart(std::move(*request.mutable_start()), model, parts_.limits);
   if (!valid.ok()) return valid.status();
-  engine::SynthesisOptions& options = valid->live.options;
-  if (!options.clean_up.has_value()) options.clean_up = CleansUp(model);
-  LiveParts parts;
-  parts.model = std::move(served->model);
-  parts.scheduler = parts_.scheduler;
-  parts.clock = parts_.clock;
-  parts.limits = parts_.limits;
+  SetCleanUp(model, valid->live.options);
   // A session lasts as long as its caller wants.
-  parts.deadline =
-      DeadlineOf(received.context, *parts_.clock, std::numeric_limits<double>::infinity());
-  parts.client = call.client();
-  parts.idle_seconds = parts_.live_idle_seconds;
-  parts.buffered_frames = parts_.buffered_frames;
+  ReplyParts parts = PartsOf(received, *served, std::numeric_limits<double>::infinity());
   Call::Stream stream;
   stream.takes_messages = true;
   stream.deadline = parts.deadline;

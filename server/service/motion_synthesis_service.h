@@ -22,6 +22,7 @@
 #include "server/security/access_control.h"
 #include "server/service/admission.h"
 #include "server/service/call.h"
+#include "server/service/clip_replies.h"
 #include "server/service/validator.h"
 
 namespace duet::server::service {
@@ -36,14 +37,14 @@ struct ServiceParts {
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
   ReceptionLimits reception;
-  int buffered_frames = 0;  // see ClipParts
+  int buffered_frames = 0;  // see ReplyParts
   // Maximum time that one reply may wait for its reader, and maximum duration of a call. CheckTime
   // enforces both.
   double write_timeout_seconds = std::numeric_limits<double>::infinity();
   double max_call_seconds = std::numeric_limits<double>::infinity();
-  double live_idle_seconds = 60;       // see LiveSessionParts
-  std::string client_key;              // see IdentifyCall
-  security::CallGuard guard{nullptr};  // without an access list, every caller is allowed
+  double live_idle_seconds = 60;                    // see ReplyParts
+  std::string client_key;                           // see CallPipeline
+  const security::AccessControl* access = nullptr;  // see CallPipeline
   // Whether followers are cleaned up if the request does not specify it. Absent: the model's
   // default (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;
@@ -120,14 +121,11 @@ class MotionSynthesisService final : public RawService {
   // Finds the model that a request selects. `prefix`: precedes the fields in errors, as "start.".
   absl::StatusOr<registry::ServedModel> FindModel(const v1::ModelSelector& selector,
                                                   absl::string_view prefix = "") const;
-  // Whether followers of a model are cleaned up if the request does not specify it.
-  bool CleansUp(const engine::ModelDescription& model) const;
-  v1::ListModelsResponse List() const;
-  absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
-  // Serves a unary method. `answer` maps const Request& to StatusOr<Response>.
-  template <typename Request, typename Answer>
-  void ServeUnary(const char* path, const metrics::MethodInfo& method, Answer answer);
-  std::shared_ptr<Call> MakeCall(OpenedCall opened, ShareLease place, CallReactor& reactor);
+  // What the replies of a call depend on. `max_seconds`: the longest time for the whole call.
+  ReplyParts PartsOf(const Received& received, const registry::ServedModel& served,
+                     double max_seconds) const;
+  // Decides whether followers are cleaned up if the request does not.
+  void SetCleanUp(const engine::ModelDescription& model, engine::SynthesisOptions& options) const;
 
   const ServiceParts parts_;
   const CallPipeline pipeline_;

@@ -39,10 +39,10 @@ CallRecord Record() {
   record.unfamiliarity = 1.25;
   record.frames = 300;
   record.chunks = 10;
-  record.windows = 7;
+  record.totals.windows = 7;
   record.first_chunk_seconds = 0.25;
-  record.queue_seconds = 0.5;
-  record.compute_seconds = 1.5;
+  record.totals.queue_seconds = 0.5;
+  record.totals.compute_seconds = 1.5;
   record.total_seconds = 2;
   return record;
 }

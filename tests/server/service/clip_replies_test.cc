@@ -68,7 +68,7 @@ class PuppetClip {
   explicit PuppetClip(
       int frames, int buffered_frames = 1000000,
       std::shared_ptr<const engine::Synthesizer> model = std::make_shared<FakeSynthesizer>()) {
-    ClipParts parts;
+    ReplyParts parts;
     parts.model = std::move(model);
     parts.scheduler = &scheduler_;
     parts.deadline = common::TimePoint(std::chrono::seconds(7));
@@ -133,7 +133,7 @@ class QuickScheduler final : public batching::WindowScheduler {
 
 TEST(ClipRepliesTest, WindowMayCompleteBeforeItsSubmissionReturns) {
   QuickScheduler scheduler;
-  ClipParts parts;
+  ReplyParts parts;
   parts.model = std::make_shared<FakeSynthesizer>();
   parts.scheduler = &scheduler;
   parts.buffered_frames = 1000000;
@@ -152,14 +152,14 @@ TEST(ClipRepliesTest, HasOneWindowInTheQueueAtATimeAndTellsHowManyTheClipHas) {
     clip.scheduler().RunNext();
   }
   EXPECT_EQ(clip.scheduler().queued_windows(), 0u);
-  EXPECT_EQ(clip.Report().windows, windows);
+  EXPECT_EQ(clip.Report().totals.windows, windows);
 }
 
 TEST(ClipRepliesTest, PausedClipResumesWhenItsBufferIsRead) {
   constexpr int kBuffered = 50;
   PuppetClip clip(3000, kBuffered);
   clip.RunAll();
-  int held = clip.Report().peak_buffered_frames;
+  int held = clip.Report().totals.peak_buffered_frames;
   for (; held - 30 >= kBuffered; held -= 30) clip.Take(1);
   EXPECT_EQ(clip.scheduler().queued_windows(), 0u) << "as many as the limit are still there";
   clip.Take(1);
@@ -228,7 +228,7 @@ TEST(ClipRepliesTest, WorksWithManyReadersOnABatcher) {
   // Ends before the readers that it tells of progress.
   const auto batcher = batching::MakeBatcher({3, 64, {4}}, common::Clock::Real());
   for (Reader& reader : readers) {
-    ClipParts parts;
+    ReplyParts parts;
     parts.model = model;
     parts.scheduler = batcher.get();
     parts.buffered_frames = 40;

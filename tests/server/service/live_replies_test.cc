@@ -87,7 +87,7 @@ class LiveRepliesTest : public ::testing::Test {
     absl::StatusOr<ValidatedLiveStart> valid =
         ValidateLiveStart(start, model_->description(), RequestLimits());
     ASSERT_THAT(valid, IsOk());
-    LiveParts parts;
+    ReplyParts parts;
     parts.model = model_;
     parts.scheduler = &scheduler_;
     parts.clock = &clock_;
@@ -185,9 +185,9 @@ TEST_F(LiveRepliesTest, EachFrameIsAnsweredInOrder) {
   End();
   EXPECT_TRUE(Take().end);
   const metrics::CallRecord report = Report();
-  EXPECT_GT(report.windows, 10);
-  EXPECT_EQ(report.queue_seconds, 0.25 * report.windows);
-  EXPECT_EQ(report.compute_seconds, 0.5 * report.windows);
+  EXPECT_GT(report.totals.windows, 10);
+  EXPECT_EQ(report.totals.queue_seconds, 0.25 * report.totals.windows);
+  EXPECT_EQ(report.totals.compute_seconds, 0.5 * report.totals.windows);
 }
 
 TEST_F(LiveRepliesTest, OneWindowAtATimeAndProgressIsReported) {
@@ -353,7 +353,7 @@ TEST_F(LiveRepliesTest, NothingIsReadWhileTheReaderDoesNotTakeFrames) {
   }
   EXPECT_GE(sent, 20);
   EXPECT_LE(sent, 21) << "one was being read while a window was in flight";
-  EXPECT_EQ(Report().peak_buffered_frames, sent);
+  EXPECT_EQ(Report().totals.peak_buffered_frames, sent);
   EXPECT_EQ(Take().frames(), sent);
   EXPECT_EQ(reads_, 1);
 }

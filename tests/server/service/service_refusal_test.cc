@@ -202,9 +202,9 @@ TEST(ServiceRecordTest, SaysWhoCalledAndWhatTheCallDid) {
   EXPECT_EQ(record.priority, "bulk");
   EXPECT_EQ(record.frames, 46);
   EXPECT_EQ(record.chunks, 2);
-  EXPECT_EQ(record.windows, 1);
-  EXPECT_DOUBLE_EQ(record.queue_seconds, 0.25);
-  EXPECT_DOUBLE_EQ(record.compute_seconds, 0.5);
+  EXPECT_EQ(record.totals.windows, 1);
+  EXPECT_DOUBLE_EQ(record.totals.queue_seconds, 0.25);
+  EXPECT_DOUBLE_EQ(record.totals.compute_seconds, 0.5);
   EXPECT_GE(record.first_chunk_seconds, 0);
   EXPECT_GE(record.total_seconds, record.first_chunk_seconds);
 }

@@ -218,7 +218,7 @@ TEST(SynthesizeTest, AnswersTenMinutesWithABoundedBuffer) {
   const std::vector<int> chunks = reply.ChunkFrames();
   EXPECT_EQ(std::accumulate(chunks.begin(), chunks.end(), 0), 9000);
   // The last window of 46 frames also brings two that the spline held back before.
-  EXPECT_LT(running.calls().WaitFor(1).peak_buffered_frames, 60 + 46 + 2);
+  EXPECT_LT(running.calls().WaitFor(1).totals.peak_buffered_frames, 60 + 46 + 2);
 }
 
 // What seed, variety, candidates and clean_up do on their way to the network and back.
