@@ -6,37 +6,41 @@
 #include <google/protobuf/message.h>
 #include <grpcpp/support/byte_buffer.h>
 
+#include <cstddef>
+
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "duet/v1/live.pb.h"
 
 namespace duet::server::service {
 
-// Scans the bytes of a message without parsing it, and limits how often each field occurs.
+// Maximum number of values in a request, and in a later message of a live session. Far above those
+// of any valid message: 4,096 keyframes with 60 classes each have 500,000.
+inline constexpr std::size_t kMaxValues = std::size_t{1} << 19;
+inline constexpr std::size_t kMaxLiveValues = std::size_t{1} << 16;
+
+// Scans the bytes of a message without parsing it, and limits the number of its values: texts,
+// submessages and unknown fields, at any depth. Numbers do not count, because they are hardly
+// larger in memory than on the wire.
 //
 // A parsed message can be many times larger than its bytes: an empty submessage has two bytes on
-// the wire and about a hundred in memory. The limits are far above those of any valid request,
-// which the validator enforces.
+// the wire and about a hundred in memory.
 //
-//   field                         maximum number in the whole message
-//   repeated numbers              no limit: they are no larger in memory than on the wire
-//   repeated                      65,536; below another repeated field 262,144
-//   any other                     1,024, or the limit of the repeated field that contains it
-//   unknown, or of another type   1,024 in total
-//
-// Returns INVALID_ARGUMENT with the field and its limit. Returns OK for malformed bytes, which the
-// parser rejects.
+// Returns INVALID_ARGUMENT with the limit and the field that exceeds it. Returns OK for malformed
+// bytes, which the parser rejects.
 absl::Status SurveyMessage(google::protobuf::io::ZeroCopyInputStream& bytes,
-                           const google::protobuf::Descriptor& type);
+                           const google::protobuf::Descriptor& type,
+                           std::size_t max_values = kMaxValues);
 
 // Conversion between messages and bytes. The service receives bytes for two reasons: gRPC's
 // generated code reports malformed messages as UNIMPLEMENTED, and a request is parsed only after
 // its size in memory was bounded.
 
 // Parses `bytes` into `message`, which must be empty except for reserved memory. Returns
-// INVALID_ARGUMENT with the expected message type if the bytes are malformed, or with the field
-// that occurs too often. Frees `bytes` in any case.
-absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& message);
+// INVALID_ARGUMENT with the expected message type if the bytes are malformed, or like
+// SurveyMessage. Frees `bytes` in any case.
+absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& message,
+                          std::size_t max_values = kMaxValues);
 
 // Parses a message of a live session after the first one. Returns also RESOURCE_EXHAUSTED if it is
 // larger than a mebibyte, far above ten seconds of any skeleton at any rate. Frees `bytes`.
