@@ -76,15 +76,6 @@ absl::Status OfSetting(absl::string_view setting, const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat(setting, ": ", status.message()));
 }
 
-std::vector<metrics::ServedVersion> Served(const registry::ModelRegistry& registry) {
-  std::vector<metrics::ServedVersion> served;
-  for (const registry::ServedModel& model : registry.List()) {
-    const engine::ModelDescription& description = model.model->description();
-    served.push_back({description.name, description.version, model.is_default});
-  }
-  return served;
-}
-
 }  // namespace
 
 metrics::LogOptions LogOptionsOf(const v1::ServerConfig& settings) {
@@ -135,7 +126,7 @@ metrics::ReadValues DuetServer::ReadValues(const metrics::LogSink& sink) const {
   read.places_in_use = [this] { return static_cast<double>(admission_.calls()); };
   read.dropped_log_lines = [&sink] { return static_cast<double>(sink.dropped_lines()); };
   read.ready = [this] { return Ready(); };
-  read.models = [this] { return Served(registry_); };
+  read.models = [this] { return registry_.List(); };
   if (secrets_->certificates() != nullptr) {
     read.certificate_end = [this] {
       return static_cast<double>(absl::ToUnixSeconds(secrets_->certificate_end()));
@@ -318,15 +309,11 @@ void DuetServer::Configure(const v1::ServerConfig& settings) {
 absl::Status DuetServer::Load(const registry::ModelSource& source,
                               const std::function<bool()>& stop) {
   engine_ = source.engine;
-  const absl::StatusOr<LoadFindings> findings =
+  const absl::StatusOr<std::vector<std::string>> problems =
       LoadModels(settings_, source, stop, manager_, registry_);
-  if (!findings.ok()) return findings.status();
-  for (const std::string& problem : findings->problems) {
+  if (!problems.ok()) return problems.status();
+  for (const std::string& problem : *problems) {
     log_.Error("load_problem", {{"message", problem}});
-  }
-  if (!findings->left_out.empty()) {
-    log_.Info("models_left_out",
-              {{"sources", findings->left_out}, {"message", "not free for all uses"}});
   }
   return absl::OkStatus();
 }

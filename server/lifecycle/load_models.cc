@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -34,43 +33,32 @@ std::string SourceOf(const Model& model) {
   return absl::StrCat("embedded/", description.name, "/", description.version);
 }
 
-// Removes the models that are not free for all uses. Returns their sources.
-std::vector<std::string> KeepFree(std::vector<Model>& models) {
-  const auto left_out = std::stable_partition(models.begin(), models.end(), [](const Model& model) {
-    return model->description().free_for_all_uses;
-  });
-  std::vector<std::string> sources;
-  std::transform(left_out, models.end(), std::back_inserter(sources), SourceOf);
-  models.erase(left_out, models.end());
-  return sources;
-}
-
 // Loads the checkpoints inside the program. The first that the settings allow is the default unless
 // the operator names one.
-absl::StatusOr<LoadFindings> LoadEmbedded(const v1::ServerConfig& settings,
-                                          const registry::ModelSource& source,
-                                          registry::ModelManager& manager,
-                                          registry::ModelRegistry& registry) {
+absl::Status LoadEmbedded(const v1::ServerConfig& settings, const registry::ModelSource& source,
+                          registry::ModelManager& manager, registry::ModelRegistry& registry) {
   const common::TimePoint begin = common::Clock::Real().Now();
   absl::StatusOr<std::vector<Model>> models = source.load_embedded();
   const double seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
-  LoadFindings findings;
   if (!models.ok()) {
     manager.Add({"embedded", models.status(), seconds});
-    return findings;
+    return absl::OkStatus();
   }
   const double seconds_each = seconds / static_cast<double>(models->size());
-  if (ServesOnlyFree(settings)) findings.left_out = KeepFree(*models);
+  if (ServesOnlyFree(settings)) {
+    const auto is_bound = [](const Model& model) {
+      return !model->description().free_for_all_uses;
+    };
+    models->erase(std::remove_if(models->begin(), models->end(), is_bound), models->end());
+  }
   for (const Model& model : *models) {
     registry::LoadReport report{SourceOf(model), model, seconds_each};
     const absl::Status checked = registry::CheckAnswers(*model);
     if (!checked.ok()) report.model = checked;
     manager.Add(report);
   }
-  if (registry.List().empty()) return findings;
-  const absl::Status set = registry.SetDefault(models->front()->description().name);
-  if (!set.ok()) return set;
-  return findings;
+  if (registry.List().empty()) return absl::OkStatus();
+  return registry.SetDefault(models->front()->description().name);
 }
 
 }  // namespace
@@ -83,20 +71,22 @@ void ConfigureModels(const v1::ServerConfig& settings, registry::ModelManager& m
   manager.SetLabels(std::move(labels));
 }
 
-absl::StatusOr<LoadFindings> LoadModels(const v1::ServerConfig& settings,
-                                        const registry::ModelSource& source,
-                                        const std::function<bool()>& stop,
-                                        registry::ModelManager& manager,
-                                        registry::ModelRegistry& registry) {
+absl::StatusOr<std::vector<std::string>> LoadModels(const v1::ServerConfig& settings,
+                                                    const registry::ModelSource& source,
+                                                    const std::function<bool()>& stop,
+                                                    registry::ModelManager& manager,
+                                                    registry::ModelRegistry& registry) {
   if (settings.model_repository().empty()) {
-    return LoadEmbedded(settings, source, manager, registry);
+    const absl::Status loaded = LoadEmbedded(settings, source, manager, registry);
+    if (!loaded.ok()) return loaded;
+    return std::vector<std::string>();
   }
   manager.UseRepository(settings.model_repository(), ServesOnlyFree(settings)
                                                          ? OnlyFree(source.load_folder)
                                                          : source.load_folder);
   absl::StatusOr<registry::ReloadReport> report = manager.Reload(stop);
   if (!report.ok()) return report.status();
-  return LoadFindings{std::move(report->problems), {}};
+  return std::move(report->problems);
 }
 
 absl::StatusOr<std::vector<std::string>> SettleModels(const v1::ServerConfig& settings,

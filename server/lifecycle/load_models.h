@@ -21,21 +21,16 @@ namespace duet::server::lifecycle {
 // Gives the manager the labels of the settings.
 void ConfigureModels(const v1::ServerConfig& settings, registry::ModelManager& manager);
 
-struct LoadFindings {
-  std::vector<std::string> problems;  // one line each
-  // Sources of the embedded models that the setting `models` excludes.
-  std::vector<std::string> left_out;
-};
-
 // Loads the models of the repository, or the embedded ones without a repository, until `stop`
-// returns true. The observer reports checkpoints that do not load. With SERVED_MODELS_FREE, a
-// checkpoint of the repository that is not free for all uses does not load, neither now nor later.
-// Fails if the repository cannot be read or is empty, and with CANCELLED if it was stopped.
-absl::StatusOr<LoadFindings> LoadModels(const v1::ServerConfig& settings,
-                                        const registry::ModelSource& source,
-                                        const std::function<bool()>& stop,
-                                        registry::ModelManager& manager,
-                                        registry::ModelRegistry& registry);
+// returns true. The observer reports checkpoints that do not load; the result has other problems,
+// one line each. With SERVED_MODELS_FREE, a model that is not free for all uses is not served,
+// neither now nor later. Fails if the repository cannot be read or is empty, and with CANCELLED if
+// it was stopped.
+absl::StatusOr<std::vector<std::string>> LoadModels(const v1::ServerConfig& settings,
+                                                    const registry::ModelSource& source,
+                                                    const std::function<bool()>& stop,
+                                                    registry::ModelManager& manager,
+                                                    registry::ModelRegistry& registry);
 
 // Sets the default model and the labels after models were loaded. Returns the labels that cannot be
 // set now because their versions are not served.

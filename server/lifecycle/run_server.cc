@@ -20,7 +20,6 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
@@ -112,10 +111,6 @@ class Findings final : public registry::ModelObserver {
     if (!problems.ok()) return Problem(std::string(problems.status().message()));
     Problems(*problems);
   }
-  void LeftOut(const std::vector<std::string>& sources) {
-    if (sources.empty()) return;
-    out_ << "left out, not free for all uses: " << absl::StrJoin(sources, ", ") << "\n";
-  }
   bool all_right() const { return all_right_; }
 
  private:
@@ -131,8 +126,7 @@ void CheckModels(const v1::ServerConfig& values, const registry::ModelSource& so
   const auto loaded = LoadModels(
       values, source, [] { return false; }, manager, registry);
   if (loaded.ok()) {
-    findings.Problems(loaded->problems);
-    findings.LeftOut(loaded->left_out);
+    findings.Problems(*loaded);
     findings.Problems(SettleModels(values, manager, registry));
   } else {
     findings.Problem(std::string(loaded.status().message()));

@@ -97,15 +97,16 @@ std::string CodeLabel(absl::StatusCode code) {
 }
 
 // Built for every scrape, so that versions that are no longer served disappear.
-prometheus::MetricFamily ModelInfo(const std::vector<ServedVersion>& models) {
+prometheus::MetricFamily ModelInfo(const std::vector<registry::ServedModel>& models) {
   prometheus::MetricFamily family;
   family.name = "duet_model_info";
   family.help = "1 for each model version that is served.";
   family.type = prometheus::MetricType::Gauge;
-  for (const ServedVersion& model : models) {
+  for (const registry::ServedModel& model : models) {
+    const engine::ModelDescription& description = model.model->description();
     prometheus::ClientMetric metric;
-    metric.label = {{"model", model.model},
-                    {"version", std::to_string(model.version)},
+    metric.label = {{"model", description.name},
+                    {"version", std::to_string(description.version)},
                     {"default", model.is_default ? "true" : "false"}};
     metric.gauge.value = 1;
     family.metric.push_back(std::move(metric));

@@ -18,18 +18,12 @@
 #include "server/batching/window_scheduler.h"
 #include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
+#include "server/registry/model_registry.h"
 
 namespace duet::server::metrics {
 
 // Returns the resident memory of this process; 0 if it cannot be read.
 std::uint64_t ResidentBytes();
-
-// A model version that is served.
-struct ServedVersion {
-  std::string model;
-  int version = 0;
-  bool is_default = false;
-};
 
 // Values that every scrape reads. Metrics of functions that are absent are omitted.
 struct ReadValues {
@@ -37,7 +31,7 @@ struct ReadValues {
   std::function<double()> places_in_use;
   std::function<double()> dropped_log_lines;
   std::function<bool()> ready;
-  std::function<std::vector<ServedVersion>()> models;
+  std::function<std::vector<registry::ServedModel>()> models;
   std::function<double()> certificate_end;  // seconds since 1970
 };
 

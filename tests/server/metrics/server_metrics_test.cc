@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <ctime>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "server/common/error_details.h"
+#include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::metrics {
@@ -98,7 +100,14 @@ TEST(ServerMetricsTest, ReportsCapacityBuildAndTheQueueAtEveryScrape) {
 
 TEST(ServerMetricsTest, ReadsModelsAtEveryScrape) {
   ServerMetrics metrics;
-  std::vector<ServedVersion> models = {{"sbu", 3, true}, {"k3hi", 1, false}};
+  const auto served = [](const std::string& name, int version, bool is_default) {
+    engine::ModelDescription description = test::FakeDescription();
+    description.name = name;
+    description.version = version;
+    return registry::ServedModel{
+        std::make_shared<test::FakeSynthesizer>(description), {}, is_default};
+  };
+  std::vector<registry::ServedModel> models = {served("sbu", 3, true), served("k3hi", 1, false)};
   ReadValues read;
   read.models = [&] { return models; };
   metrics.SetRead(std::move(read));
