@@ -51,20 +51,19 @@ void CheckSecrets(const v1::ServerConfig& settings, std::vector<std::string>* mi
   Add(security::SecretFiles::Open(std::move(secrets)).status(), mistakes);
 }
 
-void CheckAddress(absl::string_view field, const std::string& setting, Ports ports,
+void CheckAddress(absl::string_view field, const std::string& setting,
                   std::vector<std::string>* mistakes) {
   const std::optional<common::ListenAddress> address = common::AddressOf(setting);
   if (!address.has_value()) return;
   const absl::Status bindable = common::CheckBindable(address->host, address->port);
-  if (bindable.ok() || (absl::IsAlreadyExists(bindable) && ports == Ports::kMayBeInUse)) return;
+  if (bindable.ok() || absl::IsAlreadyExists(bindable)) return;
   mistakes->push_back(absl::StrCat(field, ": ", bindable.message()));
 }
 
 }  // namespace
 
 ValidatedSettings ValidateSettings(const config::CommandLine& command_line, int cores,
-                                   std::uint64_t memory_bytes, const EngineOpener& open_engine,
-                                   Ports ports) {
+                                   std::uint64_t memory_bytes, const EngineOpener& open_engine) {
   config::Settings settings = config::ReadSettings(command_line, cores, memory_bytes);
   ValidatedSettings validated{std::move(settings.values),
                               absl::UnknownError("not opened"),
@@ -74,9 +73,9 @@ ValidatedSettings ValidateSettings(const config::CommandLine& command_line, int 
   validated.source = open_engine(values);
   Add(validated.source.status(), &validated.setting_mistakes);
   CheckSecrets(values, &validated.resource_mistakes);
-  CheckAddress("listen", values.listen(), ports, &validated.resource_mistakes);
-  CheckAddress("metrics_listen", values.metrics_listen(), ports, &validated.resource_mistakes);
-  CheckAddress("admin_listen", values.admin_listen(), ports, &validated.resource_mistakes);
+  CheckAddress("listen", values.listen(), &validated.resource_mistakes);
+  CheckAddress("metrics_listen", values.metrics_listen(), &validated.resource_mistakes);
+  CheckAddress("admin_listen", values.admin_listen(), &validated.resource_mistakes);
   return validated;
 }
 
@@ -341,10 +340,8 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
     std::cout << config::PrintConfig(settings.values, command_line.sources);
     return kExitStopped;
   }
-  const bool check = command_line.task == config::Task::kCheckConfig;
-  const ValidatedSettings settings = ValidateSettings(command_line, cores, memory, open_engine,
-                                                      check ? Ports::kMayBeInUse : Ports::kFree);
-  if (check) {
+  const ValidatedSettings settings = ValidateSettings(command_line, cores, memory, open_engine);
+  if (command_line.task == config::Task::kCheckConfig) {
     stop.Release();
     return CheckConfig(settings, std::cout);
   }

@@ -32,15 +32,11 @@ struct ValidatedSettings {
   std::vector<std::string> resource_mistakes;
 };
 
-// Whether the ports of the settings may be in use. They are if the settings of a running server are
-// checked beside it.
-enum class Ports { kFree, kMayBeInUse };
-
-// The one check of settings, for a start and for --check-config. Models are checked after it.
+// The one check of settings, for a start and for --check-config, which may run beside a server with
+// these settings: a port in use is no mistake. Models are checked after it.
 // `cores` and `memory_bytes` are what the container may use.
 ValidatedSettings ValidateSettings(const config::CommandLine& command_line, int cores,
-                                   std::uint64_t memory_bytes, const EngineOpener& open_engine,
-                                   Ports ports);
+                                   std::uint64_t memory_bytes, const EngineOpener& open_engine);
 
 // Loads the models that the settings name, with the code of a server start, and writes one line for
 // each model and for each mistake: mistakes in settings, checkpoints that do not load, folders that
