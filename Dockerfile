@@ -45,7 +45,7 @@ RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
 FROM build AS build-training
 RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
     cmake --build --preset release --parallel "$(scripts/build_jobs.sh)" \
-    --target duet-train duet-eval duet-import duet-keyframe \
+    --target duet-train duet-eval duet-import \
     && cmake --install build/release --prefix /out/usr/local --strip --component training
 
 # The server image's root, with only the packages' files, and its bill of materials.

@@ -43,7 +43,7 @@ LAYERS = (
     Layer("gltf format", "model/formats/gltf", sees=("base", "motion", "retargeting")),
     Layer("formats", "model/formats",
           sees=("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format")),
-    Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
+    Layer("authoring", "model/authoring", sees=("base", "motion")),
     Layer("dataset", "model/dataset", sees=MOTION_FILES),
     Layer("body", "model/body", sees=("base", "motion")),
     Layer("solver", "model/solver", sees=("base", "motion", "body")),

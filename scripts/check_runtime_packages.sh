@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly bin_dir="$1"
 readonly programs=(duet-server duet)
-training_programs=(duet-train duet-eval duet-import duet-keyframe)
+training_programs=(duet-train duet-eval duet-import)
 
 # Prints the library files that a program loads by name.
 libraries_of() {
@@ -58,7 +58,7 @@ for program in "${programs[@]}"; do
 done
 if [[ ! -x "${bin_dir}/duet-train" ]]; then
   echo "Built without training: packages/training.txt is not checked."
-  training_programs=(duet-import duet-keyframe)
+  training_programs=(duet-import)
 fi
 missing="$(comm -23 <(packages_of "${training_programs[@]}") <(listed_in runtime training))"
 if [[ -n "${missing}" ]]; then

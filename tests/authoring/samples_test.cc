@@ -1,5 +1,4 @@
-// The sample leaders that ship with the project: made from the key-frame texts beside them, and
-// such as a person could move.
+// The sample leaders that ship with the project move as a person could.
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/authoring/keyframes.h"
-#include "model/base/file.h"
-#include "model/formats/bvh/bvh_document.h"
-#include "model/formats/bvh/bvh_motion.h"
 #include "model/formats/motion_file.h"
 
 namespace duet::authoring {
@@ -28,37 +22,14 @@ std::filesystem::path SamplesFolder() {
 class Sample : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    bvh_ = SamplesFolder() / (std::string(GetParam()) + ".bvh");
-    keyframes_ = SamplesFolder() / "keyframes" / (std::string(GetParam()) + ".txt");
-    absl::StatusOr<motion::Clip> clip = formats::ReadLeader(bvh_);
+    absl::StatusOr<motion::Clip> clip =
+        formats::ReadLeader(SamplesFolder() / (std::string(GetParam()) + ".bvh"));
     ASSERT_TRUE(clip.ok()) << clip.status();
     clip_ = *std::move(clip);
   }
 
-  std::filesystem::path bvh_, keyframes_;
   motion::Clip clip_;
 };
-
-TEST_P(Sample, EqualsItsKeyFrames) {
-  const absl::StatusOr<std::string> text = base::ReadFile(keyframes_, 1 << 20, "key frames"),
-                                    committed = base::ReadFile(bvh_, 1 << 20, "a motion");
-  ASSERT_TRUE(text.ok()) << text.status();
-  ASSERT_TRUE(committed.ok()) << committed.status();
-  const absl::StatusOr<motion::Clip> clip = ParseKeyframes(*text, keyframes_.string());
-  ASSERT_TRUE(clip.ok()) << clip.status();
-  const absl::StatusOr<formats::bvh::BvhDocument> made =
-      formats::bvh::ToBvh(*clip, motion::SbuSkeleton());
-  const absl::StatusOr<formats::bvh::BvhDocument> there =
-      formats::bvh::ParseBvh(*committed, bvh_.string());
-  ASSERT_TRUE(made.ok()) << made.status();
-  ASSERT_TRUE(there.ok()) << there.status();
-  const std::string advice = "run duet-keyframe " + keyframes_.string() + " --out " + bvh_.string();
-  const auto hierarchy = [](const std::string& bvh) { return bvh.substr(0, bvh.find("MOTION")); };
-  EXPECT_EQ(hierarchy(FormatBvh(*made)), hierarchy(*committed)) << advice;
-  // The last digits may differ from one processor to another.
-  EXPECT_THAT(made->values, ::testing::Pointwise(::testing::FloatNear(1e-3f), there->values))
-      << advice;
-}
 
 TEST_P(Sample, StandsOnTheFloorWithKneesThatBendForwards) {
   for (int frame = 0; frame < clip_.frame_count(); ++frame) {

@@ -19,7 +19,7 @@ constexpr int kTorso = 2, kLeftHand = 5, kRightHand = 8;
 
 // A person who stretches the right hand out to +z, and one who stands opposite.
 motion::Poses Offering() {
-  return test::Puppet([](double, authoring::PuppetPose* pose) {
+  return test::Puppet([](double, test::PuppetPose* pose) {
     pose->right_hand.target = {-0.15, 0, 0.7};
   });
 }

@@ -1,7 +1,6 @@
 #include "model/body/grade.h"
 
 #include "gmock/gmock.h"
-#include "model/authoring/puppet.h"
 #include "model/body/contact.h"
 #include "tests/support/bodies.h"
 
@@ -56,7 +55,7 @@ TEST(Grade, CountsFramesInWhichBothFeetMove) {
 
 TEST(Grade, AFootThatStandsIsNoSkating) {
   const motion::Poses kicking =
-      Puppet([](double t, authoring::PuppetPose* pose) { pose->left_foot.target.z += t; });
+      Puppet([](double t, test::PuppetPose* pose) { pose->left_foot.target.z += t; });
   EXPECT_EQ(GradeOf(Away(2), kicking).skating, 0);
 }
 

@@ -7,7 +7,7 @@ import unittest
 
 import tools
 
-PROGRAMS = ("duet", "duet-eval", "duet-import", "duet-keyframe", "duet-train")
+PROGRAMS = ("duet", "duet-eval", "duet-import", "duet-train")
 
 
 def help_of(*command):

@@ -50,7 +50,7 @@ class PackageTest(tools.FolderTest):
                      "usr/bin/duet-server",
                      "usr/lib/systemd/system/duet-server.service",
                      "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto",
-                     "usr/bin/duet-train", "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe"):
+                     "usr/bin/duet-train", "usr/bin/duet-eval", "usr/bin/duet-import"):
             self.assertTrue((self.root / path).is_file(), path)
         for name in self.packages:
             self.assertIn("mocap.cs.cmu.edu",

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "gmock/gmock.h"
-#include "model/authoring/puppet.h"
 #include "tests/support/bodies.h"
 
 namespace duet::engine {
@@ -34,7 +33,7 @@ TEST(CandidateJudge, LeavesOutFaults) {
 TEST(CandidateJudge, TheFirstOfEquals) { EXPECT_EQ(Best({Away(0, 1), Away(1, 1)}), 0); }
 
 TEST(CandidateJudge, HandsThatAreToMeetDo) {
-  const motion::Poses leader = Puppet([](double, authoring::PuppetPose* pose) {
+  const motion::Poses leader = Puppet([](double, test::PuppetPose* pose) {
     pose->right_hand.target = {-0.15, 0, 0.7};
   });
   // The right hand of the second one is at the leader's.

@@ -56,7 +56,6 @@ constexpr Target kTargets[] = {
     {"gltf", Gltf},
     {"joint_map", JointMap},
     {"json_motion", JsonMotion},
-    {"keyframes", Keyframes},
     {"npy", Npy},
     {"recipe_json", RecipeJson},
     {"recipe_text", RecipeText},

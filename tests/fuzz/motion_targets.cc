@@ -7,7 +7,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
-#include "model/authoring/keyframes.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
 #include "model/formats/bvh/bvh_motion.h"
@@ -129,11 +128,6 @@ Broken Gltf(absl::string_view input) {
       ShortPerson(), input, kSource, read_beside, {}, formats::gltf::GltfContainer::kBinary);
   if (!onto.ok()) return CheckRefusal(onto.status());
   return CheckRefusal(formats::gltf::ParseGltf(*onto, kSource).status(), {});
-}
-
-Broken Keyframes(absl::string_view input) {
-  const absl::StatusOr<motion::Clip> clip = authoring::ParseKeyframes(input, kSource);
-  return clip.ok() ? CheckRead(*clip, motion::SbuSkeleton()) : CheckRefusal(clip.status());
 }
 
 Broken JointMap(absl::string_view input) {

@@ -13,7 +13,6 @@ Broken Gltf(absl::string_view input);
 Broken JsonMotion(absl::string_view input);
 Broken Npy(absl::string_view input);
 Broken SbuText(absl::string_view input);
-Broken Keyframes(absl::string_view input);
 Broken JointMap(absl::string_view input);
 Broken DatasetLayout(absl::string_view input);
 Broken DatasetIndex(absl::string_view input);

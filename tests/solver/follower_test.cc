@@ -51,7 +51,7 @@ TEST(FollowerSolverTest, FeetThatWereMovedDoNotBendTheKnees) {
 
 TEST(FollowerSolverTest, EndsACrouchAndKeepsAShortDip) {
   const auto crouch = [](double from, double to) {
-    return Puppet([=](double at, authoring::PuppetPose* pose) {
+    return Puppet([=](double at, test::PuppetPose* pose) {
       if (at >= from && at < to) pose->torso.y -= 0.25;
     });
   };

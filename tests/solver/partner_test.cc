@@ -86,7 +86,7 @@ TEST(PartnerTest, TurnsBackAsFarAsTheRuleSays) {
 
 TEST(PartnerTest, MeetsAHandThatIsOffered) {
   const Fixture f;
-  const motion::Poses leader = Puppet([](double, authoring::PuppetPose* pose) {
+  const motion::Poses leader = Puppet([](double, test::PuppetPose* pose) {
     pose->right_hand.target = {-0.15, 0, 0.7};
   });
   const auto apart = [&](float hands) {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "gtest/gtest.h"
-#include "model/authoring/puppet.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
+#include "tests/support/puppet.h"
 
 // Puppets: a person of the SBU skeleton who stands or walks, and what to do to them.
 namespace duet::test {
@@ -22,8 +22,8 @@ constexpr int kFrames = 46;
 // The ankle of a puppet that stands: the floor of its feet.
 constexpr double kAnkle = 0.08;
 
-inline authoring::PuppetPose Standing() {
-  authoring::PuppetPose pose;
+inline PuppetPose Standing() {
+  PuppetPose pose;
   pose.torso = {0, 1.1, 0};
   pose.left_foot.target = {0.12, kAnkle, 0};
   pose.right_foot.target = {-0.12, kAnkle, 0};
@@ -33,11 +33,11 @@ inline authoring::PuppetPose Standing() {
 }
 
 // `shape` changes the standing pose at a time in seconds.
-inline motion::Poses Puppet(const std::function<void(double, authoring::PuppetPose*)>& shape = {},
+inline motion::Poses Puppet(const std::function<void(double, PuppetPose*)>& shape = {},
                             int frames = kFrames) {
   motion::Poses poses(0, 15);
   for (int t = 0; t < frames; ++t) {
-    authoring::PuppetPose pose = Standing();
+    PuppetPose pose = Standing();
     if (shape) shape(t / kRate, &pose);
     poses.Append(PosePuppet(pose));
   }

@@ -1,12 +1,12 @@
-#ifndef DUET_MODEL_AUTHORING_PUPPET_H_
-#define DUET_MODEL_AUTHORING_PUPPET_H_
+#ifndef DUET_TESTS_SUPPORT_PUPPET_H_
+#define DUET_TESTS_SUPPORT_PUPPET_H_
 
 #include <vector>
 
 #include "model/motion/vec3.h"
 #include "model/retargeting/rotation.h"
 
-namespace duet::authoring {
+namespace duet::test {
 
 // Degrees: yaw to the left, pitch forwards, roll to the left.
 struct Lean {
@@ -29,6 +29,6 @@ struct PuppetPose {
 // stretches towards a target out of reach. Knees bend forwards, elbows backwards and down. [15]
 std::vector<motion::Vec3> PosePuppet(const PuppetPose& pose);
 
-}  // namespace duet::authoring
+}  // namespace duet::test
 
-#endif  // DUET_MODEL_AUTHORING_PUPPET_H_
+#endif  // DUET_TESTS_SUPPORT_PUPPET_H_

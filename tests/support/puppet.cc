@@ -1,11 +1,11 @@
-#include "model/authoring/puppet.h"
+#include "tests/support/puppet.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "model/base/angle.h"
 
-namespace duet::authoring {
+namespace duet::test {
 namespace {
 
 // Metres. Hips relative to the torso, shoulders and head to the neck; x is for the left side.
@@ -72,9 +72,9 @@ LimbPoints PoseLimb(retargeting::Vec3d start, retargeting::Vec3d target, Bones b
 // Outward rotations of the two sides have opposite signs.
 double Outwards(double swivel, Side side) { return side == kLeft ? swivel : -swivel; }
 
-class Puppet {
+class Poser {
  public:
-  explicit Puppet(const PuppetPose& pose)
+  explicit Poser(const PuppetPose& pose)
       : pose_(pose), pelvis_(Turn(pose.pelvis)), chest_(Turn(pose.chest)), joints_(15) {}
 
   std::vector<motion::Vec3> Pose() {
@@ -120,6 +120,6 @@ class Puppet {
 
 }  // namespace
 
-std::vector<motion::Vec3> PosePuppet(const PuppetPose& pose) { return Puppet(pose).Pose(); }
+std::vector<motion::Vec3> PosePuppet(const PuppetPose& pose) { return Poser(pose).Pose(); }
 
-}  // namespace duet::authoring
+}  // namespace duet::test
