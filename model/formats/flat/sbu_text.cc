@@ -1,5 +1,11 @@
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/flat/flat_files.h"
@@ -9,70 +15,17 @@ namespace duet::formats::flat {
 namespace {
 
 constexpr int kPeople = 2;
-constexpr const char* kAxes[] = {"x", "y", "z"};
-
-// Splits one line of a file into values and tracks the column for errors.
-class SbuLine {
- public:
-  SbuLine(absl::string_view source, int number, absl::string_view text,
-          const std::vector<std::string>& joint_names)
-      : source_(source), number_(number), text_(text), joint_names_(joint_names) {}
-
-  absl::Status CheckCount() const {
-    const std::size_t expected = 1 + joint_names_.size() * 3 * kPeople;
-    std::size_t count = 1;
-    for (char c : text_) count += c == ',' ? 1 : 0;
-    if (count == expected) return absl::OkStatus();
-    return base::ErrorAt(
-        source_, number_,
-        absl::StrCat("expected ", expected, " comma-separated values (a frame number, then ",
-                     joint_names_.size(),
-                     " joints x (x, y, z) of the left and of the right person), got ", count));
-  }
-
-  absl::Status ReadFrameNumber(int* value) {
-    const absl::string_view field = NextField();
-    if (base::ParseInteger(field, value)) return absl::OkStatus();
-    return base::ErrorAt(
-        source_, number_, 1,
-        absl::StrCat("frame number: expected a whole number, got ", base::Quoted(field)));
-  }
-
-  absl::Status ReadPosition(int person, std::size_t joint, motion::Vec3* position) {
-    float* const axes[] = {&position->x, &position->y, &position->z};
-    for (int axis = 0; axis < 3; ++axis) {
-      const int column = column_;
-      const absl::string_view field = NextField();
-      if (!motion::ParseCoordinate(field, axes[axis])) {
-        return base::ErrorAt(
-            source_, number_, column,
-            absl::StrCat(person == 0 ? "left" : "right", " person's ", joint_names_[joint], " ",
-                         kAxes[axis], ": ", motion::ExpectedCoordinate(field)));
-      }
-    }
-    return absl::OkStatus();
-  }
-
- private:
-  absl::string_view NextField() {
-    const std::size_t start = static_cast<std::size_t>(column_ - 1);
-    const absl::string_view rest = text_.substr(start);
-    const absl::string_view field = rest.substr(0, rest.find(','));
-    column_ += static_cast<int>(field.size()) + 1;
-    return field;
-  }
-
-  absl::string_view source_;
-  int number_;
-  absl::string_view text_;
-  const std::vector<std::string>& joint_names_;
-  int column_ = 1;
-};
 
 // Checks that frame numbers increase by the step between the first two.
 class FrameNumbers {
  public:
-  absl::Status Accept(absl::string_view source, int line, int number) {
+  absl::Status Accept(absl::string_view source, int line, absl::string_view field) {
+    int number = 0;
+    if (!base::ParseInteger(field, &number)) {
+      return base::ErrorAt(
+          source, line, 1,
+          absl::StrCat("frame number: expected a whole number, got ", base::Quoted(field)));
+    }
     if (count_ == 1) step_ = number - last_;
     if (count_ >= 1 && (step_ <= 0 || number - last_ != step_)) {
       return base::ErrorAt(source, line, 1,
@@ -89,25 +42,39 @@ class FrameNumbers {
   int count_ = 0, last_ = 0, step_ = 0;
 };
 
-absl::Status ReadPeople(SbuLine* line, const SbuOptions& options, SbuRecording* recording) {
-  for (int person = 0; person < kPeople; ++person) {
-    motion::Clip& clip = person == 0 ? recording->left : recording->right;
-    std::vector<motion::Vec3> pose(options.joint_names.size());
-    for (std::size_t joint = 0; joint < pose.size(); ++joint) {
-      absl::Status status = line->ReadPosition(person, joint, &pose[joint]);
-      if (!status.ok()) return status;
-      pose[joint] = ToWorld(options.coordinates, pose[joint]);
+// Appends the frame of a line to both people.
+absl::Status ReadFrame(absl::string_view source, int line, absl::string_view text,
+                       const SbuOptions& options, FrameNumbers* numbers, SbuRecording* recording) {
+  const std::vector<absl::string_view> fields = absl::StrSplit(text, ',');
+  const std::size_t joints = options.joint_names.size(), expected = 1 + joints * 3 * kPeople;
+  if (fields.size() != expected) {
+    return base::ErrorAt(
+        source, line,
+        absl::StrCat("expected ", expected, " comma-separated values (a frame number, then ",
+                     joints, " joints x (x, y, z) of the left and of the right person), got ",
+                     fields.size()));
+  }
+  absl::Status status = numbers->Accept(source, line, fields[0]);
+  if (!status.ok()) return status;
+  std::size_t next = 1;
+  for (motion::Clip* person : {&recording->left, &recording->right}) {
+    std::vector<motion::Vec3> pose(joints);
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      motion::Vec3& position = pose[joint];
+      for (const auto& [axis, value] : {std::pair("x", &position.x), std::pair("y", &position.y),
+                                        std::pair("z", &position.z)}) {
+        const absl::string_view field = fields[next++];
+        if (motion::ParseCoordinate(field, value)) continue;
+        return base::ErrorAt(source, line, static_cast<int>(field.data() - text.data()) + 1,
+                             absl::StrCat(person == &recording->left ? "left" : "right",
+                                          " person's ", options.joint_names[joint], " ", axis, ": ",
+                                          motion::ExpectedCoordinate(field)));
+      }
+      position = ToWorld(options.coordinates, position);
     }
-    clip.Append(pose);
+    person->Append(pose);
   }
   return absl::OkStatus();
-}
-
-SbuRecording EmptyRecording(const SbuOptions& options) {
-  motion::Clip empty;
-  empty.joint_names = options.joint_names;
-  empty.frame_rate_hz = options.frame_rate_hz;
-  return {empty, empty};
 }
 
 void AppendPerson(const SbuOptions& options, const motion::Clip& clip, int frame,
@@ -127,7 +94,10 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
                                       const SbuOptions& options) {
   absl::Status status = motion::CheckFrameRate(source, options.frame_rate_hz);
   if (!status.ok()) return status;
-  SbuRecording recording = EmptyRecording(options);
+  motion::Clip empty;
+  empty.joint_names = options.joint_names;
+  empty.frame_rate_hz = options.frame_rate_hz;
+  SbuRecording recording{empty, empty};
   FrameNumbers frame_numbers;
   base::LineReader lines(base::SkipByteOrderMark(text));
   for (absl::string_view content; lines.Next(&content);) {
@@ -137,12 +107,7 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
           source, lines.number(),
           absl::StrCat("expected at most ", motion::kMaxMotionFrames, " frames, got more"));
     }
-    SbuLine line(source, lines.number(), content, options.joint_names);
-    int number = 0;
-    status = line.CheckCount();
-    if (status.ok()) status = line.ReadFrameNumber(&number);
-    if (status.ok()) status = frame_numbers.Accept(source, lines.number(), number);
-    if (status.ok()) status = ReadPeople(&line, options, &recording);
+    status = ReadFrame(source, lines.number(), content, options, &frame_numbers, &recording);
     if (!status.ok()) return status;
   }
   if (recording.left.poses.empty()) {
