@@ -1,13 +1,14 @@
 #include "client/viewer/page.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
+#include <cstddef>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/string_view.h"
+#include "absl/types/span.h"
+#include "model/motion/recorded_motion.h"
 #include "nlohmann/json.hpp"
 
 // Embedded by duet_embed_file.
@@ -50,31 +51,6 @@ std::string EscapeHtml(absl::string_view text) {
                              {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
 }
 
-void AppendLittleEndian(float value, std::string* bytes) {
-  uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(bits >> shift));
-}
-
-absl::Status CheckPerson(const std::string& name, const motion::Clip& clip,
-                         const std::vector<std::string>& joint_names) {
-  if (clip.frame_count() < 1 || !(clip.frame_rate_hz > 0)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": expected at least one frame and a rate above 0, got ",
-                     clip.frame_count(), " frames at ", clip.frame_rate_hz, " Hz"));
-  }
-  if (clip.joint_names != joint_names || clip.poses.joint_count() != clip.joint_count()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": expected the joints of the first motion, got others"));
-  }
-  for (const motion::Vec3& position : clip.poses.all()) {
-    if (IsFinite(position)) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": expected finite positions, got one that is not"));
-  }
-  return absl::OkStatus();
-}
-
 std::string FillPage(const PageParts& parts) {
   const std::string page =
       absl::StrReplaceAll(Embedded(duet_frame, duet_frame_end), {{"{{BODY}}", parts.body}});
@@ -100,33 +76,34 @@ std::string SafeJson(const nlohmann::json& data) {
                              {{"<", "\\u003c"}});
 }
 
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "positions are copied as they are");
+
 // Encodes positions [frames, joints, 3] as base64 of little-endian float32.
 std::string EncodePositions(const motion::Clip& clip) {
-  std::string bytes;
-  bytes.reserve(clip.poses.all().size() * sizeof(motion::Vec3));
-  for (const motion::Vec3& position : clip.poses.all()) {
-    AppendLittleEndian(position.x, &bytes);
-    AppendLittleEndian(position.y, &bytes);
-    AppendLittleEndian(position.z, &bytes);
-  }
-  return absl::Base64Escape(bytes);
+  const absl::Span<const motion::Vec3> all = clip.poses.all();
+  return absl::Base64Escape(
+      {reinterpret_cast<const char*>(all.data()), all.size() * sizeof(motion::Vec3)});
 }
 
-// INVALID_ARGUMENT, with `name` in front, unless leader and follower have at least one frame, a
-// rate above 0, these joints, finite positions, and the same frames and rate. `follower` may be
-// null.
+// INVALID_ARGUMENT, with `name` in front, unless leader and follower are valid clips of these
+// joints with the same frames and rate. `follower` may be null.
 absl::Status CheckMotion(const std::string& name, const std::vector<std::string>& joint_names,
                          const motion::Clip& leader, const motion::Clip* follower) {
-  absl::Status status = CheckPerson(name, leader, joint_names);
-  if (!status.ok() || follower == nullptr) return status;
-  status = CheckPerson(name, *follower, joint_names);
-  if (!status.ok()) return status;
-  if (follower->frame_count() == leader.frame_count() &&
-      follower->frame_rate_hz == leader.frame_rate_hz) {
-    return status;
+  for (const motion::Clip* person : {&leader, follower}) {
+    if (person == nullptr) continue;
+    absl::Status status = CheckClip(name, *person);
+    if (!status.ok()) return status;
+    if (person->joint_names != joint_names) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(name, ": expected the joints of the first motion, got others"));
+    }
+    if (person->frame_count() != leader.frame_count() ||
+        person->frame_rate_hz != leader.frame_rate_hz) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(name, ": expected equal frames and rates of leader and follower"));
+    }
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat(name, ": expected equal frames and rates of leader and follower"));
+  return absl::OkStatus();
 }
 
 // INVALID_ARGUMENT if a bone names a joint outside of [0, joint_count).
@@ -189,48 +166,51 @@ absl::Status Check(const GalleryContent& content) {
   return CheckBones(content.bones, first.joint_count());
 }
 
-nlohmann::json MotionJson(const GalleryMotion& motion) {
-  nlohmann::json object = {{"name", motion.name},
-                           {"frameRate", motion.leader.frame_rate_hz},
-                           {"frames", motion.leader.frame_count()},
-                           {"leader", EncodePositions(motion.leader)}};
-  if (motion.follower) object["follower"] = EncodePositions(*motion.follower);
-  return object;
+// {frameRate, frames, leader, follower?}
+nlohmann::json MotionJson(const motion::Clip& leader, const motion::Clip* follower) {
+  nlohmann::json motion = {{"frameRate", leader.frame_rate_hz},
+                           {"frames", leader.frame_count()},
+                           {"leader", EncodePositions(leader)}};
+  if (follower != nullptr) motion["follower"] = EncodePositions(*follower);
+  return motion;
+}
+
+// Adds the fields of both pages: {title, subtitle, joints, bones}.
+template <typename Content>
+void AddFrame(const Content& content, const std::vector<std::string>& joints,
+              nlohmann::json* data) {
+  (*data)["title"] = content.title;
+  (*data)["subtitle"] = content.subtitle;
+  (*data)["joints"] = joints;
+  (*data)["bones"] = nlohmann::json::array();
+  for (const motion::Bone& bone : content.bones) {
+    (*data)["bones"].push_back({bone.parent, bone.child});
+  }
 }
 
 // {title, subtitle, joints, bones, motions [{name, frameRate, frames, leader, follower?}]}
 nlohmann::json Data(const GalleryContent& content) {
-  nlohmann::json motions = nlohmann::json::array(), bones = nlohmann::json::array();
-  for (const GalleryMotion& motion : content.motions) motions.push_back(MotionJson(motion));
-  for (const motion::Bone& bone : content.bones) bones.push_back({bone.parent, bone.child});
-  return {{"title", content.title},
-          {"subtitle", content.subtitle},
-          {"joints", content.motions[0].leader.joint_names},
-          {"bones", bones},
-          {"motions", motions}};
+  nlohmann::json data;
+  AddFrame(content, content.motions[0].leader.joint_names, &data);
+  for (const GalleryMotion& motion : content.motions) {
+    data["motions"].push_back(
+        MotionJson(motion.leader, motion.follower ? &*motion.follower : nullptr));
+    data["motions"].back()["name"] = motion.name;
+  }
+  return data;
 }
 
 }  // namespace
 
 std::string PageDataJson(const PageContent& content) {
-  const motion::Clip& leader = content.pair.leader;
+  nlohmann::json data = MotionJson(content.pair.leader, &content.pair.follower);
+  AddFrame(content, content.pair.leader.joint_names, &data);
   const std::vector<std::string> classes = Classes(content.weights);
-  nlohmann::json bones = nlohmann::json::array();
-  for (const motion::Bone& bone : content.bones) bones.push_back({bone.parent, bone.child});
-  nlohmann::json keyframes = nlohmann::json::array();
+  data["classes"] = classes;
+  data["keyframes"] = nlohmann::json::array();
   for (const WeightKeyframe& keyframe : content.weights) {
-    keyframes.push_back(WeightsJson(keyframe, classes));
+    data["keyframes"].push_back(WeightsJson(keyframe, classes));
   }
-  nlohmann::json data = {{"title", content.title},
-                         {"subtitle", content.subtitle},
-                         {"joints", leader.joint_names},
-                         {"bones", bones},
-                         {"frameRate", leader.frame_rate_hz},
-                         {"frames", leader.frame_count()},
-                         {"classes", classes},
-                         {"keyframes", keyframes},
-                         {"leader", EncodePositions(leader)},
-                         {"follower", EncodePositions(content.pair.follower)}};
   if (!content.glb.empty()) data["glb"] = absl::Base64Escape(content.glb);
   if (content.grade) data["grade"] = GradeJson(*content.grade);
   return SafeJson(data);

@@ -59,9 +59,8 @@ struct GalleryContent {
 // same camera, with curves of speed and distance below the timeline.
 //
 // Errors: INVALID_ARGUMENT that names the motion if there are no motions or more than kMostMotions,
-//         joints differ from the first motion's, a motion has no frame or no valid rate, leader and
-//         follower differ in frames or rate, a position is not finite, or a bone names an unknown
-//         joint.
+//         joints differ from the first motion's, a motion is no valid clip (motion::CheckClip),
+//         leader and follower differ in frames or rate, or a bone names an unknown joint.
 inline constexpr int kMostMotions = 12;
 absl::StatusOr<std::string> RenderGallery(const GalleryContent& content);
 

@@ -152,18 +152,19 @@ TEST(RenderGalleryTest, InvalidContentIsRejected) {
   const struct {
     const char* message;
     void (*spoil)(GalleryContent*);
-  } cases[] = {{"expected 1 to 12, got 0", [](GalleryContent* c) { c->motions.clear(); }},
-               {"got 13", [](GalleryContent* c) { c->motions.resize(13, c->motions[0]); }},
-               {"alone: expected at least one frame",
-                [](GalleryContent* c) { c->motions[1].leader.poses = {}; }},
-               {"at 0 Hz", [](GalleryContent* c) { c->motions[1].leader.frame_rate_hz = 0; }},
-               {"alone: expected the joints",
-                [](GalleryContent* c) { c->motions[1].leader.joint_names[0] = "x"; }},
-               {"captured: expected equal frames",
-                [](GalleryContent* c) { c->motions[0].follower = SmallClip(15, 2); }},
-               {"expected finite positions", [](GalleryContent* c) {
-                  c->motions[0].follower->at(1, 1).x = std::numeric_limits<float>::quiet_NaN();
-                }}};
+  } cases[] = {
+      {"expected 1 to 12, got 0", [](GalleryContent* c) { c->motions.clear(); }},
+      {"got 13", [](GalleryContent* c) { c->motions.resize(13, c->motions[0]); }},
+      {"alone: expected at least 1 frame",
+       [](GalleryContent* c) { c->motions[1].leader.poses = {}; }},
+      {"alone: frame rate", [](GalleryContent* c) { c->motions[1].leader.frame_rate_hz = 0; }},
+      {"alone: expected the joints",
+       [](GalleryContent* c) { c->motions[1].leader.joint_names[0] = "x"; }},
+      {"captured: expected equal frames",
+       [](GalleryContent* c) { c->motions[0].follower = SmallClip(15, 2); }},
+      {"frame 1 tip: expected a finite position", [](GalleryContent* c) {
+         c->motions[0].follower->at(1, 1).x = std::numeric_limits<float>::quiet_NaN();
+       }}};
   for (const auto& [message, spoil] : cases) {
     GalleryContent content = SmallGallery();
     spoil(&content);
