@@ -115,12 +115,6 @@ namespace {
 // Cosine of the middle angle below which only the sum of the others is defined.
 constexpr double kGimbalLock = 1e-5;
 
-Vec3d AxisOf(int axis) {
-  return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
-}
-
-double Component(Vec3d a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
-
 // `angle` plus the multiple of 2 pi that brings it nearest to `previous`.
 EulerAngles Nearest(EulerAngles angles, const EulerAngles& previous) {
   for (std::size_t i = 0; i < angles.size(); ++i) {
@@ -137,7 +131,7 @@ double SquaredDifference(const EulerAngles& a, const EulerAngles& b) {
 
 // Cosine of the middle angle.
 double MiddleCosine(Quaternion q, EulerOrder order) {
-  const Vec3d i = Rotate(q, AxisOf(order[0])), j = Rotate(q, AxisOf(order[1]));
+  const Vec3d i = Rotate(q, UnitAxis(order[0])), j = Rotate(q, UnitAxis(order[1]));
   return std::hypot(Component(i, order[0]), Component(j, order[0]));
 }
 
@@ -145,14 +139,14 @@ double MiddleCosine(Quaternion q, EulerOrder order) {
 
 Quaternion FromEuler(EulerAngles angles, EulerOrder order) {
   Quaternion q;
-  for (std::size_t i = 0; i < order.size(); ++i) q = q * AxisAngle(AxisOf(order[i]), angles[i]);
+  for (std::size_t i = 0; i < order.size(); ++i) q = q * AxisAngle(UnitAxis(order[i]), angles[i]);
   return q;
 }
 
 EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous) {
   const auto [i, j, k] = order;
   // An element of the rotation matrix.
-  const auto at = [&q](int row, int column) { return Component(Rotate(q, AxisOf(column)), row); };
+  const auto at = [&q](int row, int column) { return Component(Rotate(q, UnitAxis(column)), row); };
   const double parity = (i + 1) % 3 == j ? 1 : -1;
   const double sine = std::clamp(parity * at(i, k), -1.0, 1.0);
   const double cosine = MiddleCosine(q, order);

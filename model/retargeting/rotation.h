@@ -31,6 +31,15 @@ inline double Norm(Vec3d a) { return std::sqrt(Dot(a, a)); }
 // `a` scaled to length 1, or `fallback` if it is too short to have a direction.
 Vec3d Unit(Vec3d a, Vec3d fallback);
 
+// Of the axes 0 x, 1 y, 2 z: the unit vector along it, and the component of `a`.
+inline Vec3d UnitAxis(int axis) {
+  return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+}
+inline double& Component(Vec3d& a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
+inline double Component(const Vec3d& a, int axis) {
+  return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
+
 // A unit quaternion; q and -q are the same rotation.
 struct Quaternion {
   double w = 1, x = 0, y = 0, z = 0;

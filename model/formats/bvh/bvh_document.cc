@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -54,23 +55,16 @@ std::optional<int> DecimalsOf(absl::string_view number) {
   return plain ? std::optional<int>(static_cast<int>(decimals.size())) : std::nullopt;
 }
 
-struct ChannelName {
-  BvhChannel channel;
-  const char* name;
-};
-constexpr ChannelName kChannelNames[] = {
-    {BvhChannel::kXPosition, "Xposition"}, {BvhChannel::kYPosition, "Yposition"},
-    {BvhChannel::kZPosition, "Zposition"}, {BvhChannel::kXRotation, "Xrotation"},
-    {BvhChannel::kYRotation, "Yrotation"}, {BvhChannel::kZRotation, "Zrotation"}};
+// In the order of BvhChannel.
+constexpr const char* kChannelNames[] = {"Xposition", "Yposition", "Zposition",
+                                         "Xrotation", "Yrotation", "Zrotation"};
 
-const ChannelName* FindChannel(absl::string_view name) {
-  for (const ChannelName& entry : kChannelNames) {
-    if (absl::EqualsIgnoreCase(entry.name, name)) return &entry;
+std::optional<BvhChannel> FindChannel(absl::string_view name) {
+  for (std::size_t i = 0; i < std::size(kChannelNames); ++i) {
+    if (absl::EqualsIgnoreCase(kChannelNames[i], name)) return static_cast<BvhChannel>(i);
   }
-  return nullptr;
+  return std::nullopt;
 }
-
-bool IsPosition(BvhChannel channel) { return channel <= BvhChannel::kZPosition; }
 
 // Reads words and lines of a text and tracks the line number.
 class Cursor {
@@ -215,13 +209,12 @@ class BvhParser {
     if (!joint.channels.empty()) return Error("CHANNELS: expected once per joint, got twice");
     for (int i = 0; i < count; ++i) {
       const absl::string_view name = cursor_.Word();
-      const ChannelName* entry = FindChannel(name);
-      if (entry == nullptr) return Unexpected(name, "a channel such as Xposition or Zrotation");
-      for (BvhChannel earlier : joint.channels) {
-        if (earlier == entry->channel)
-          return Error(absl::StrCat("channel ", name, ": expected once per joint, got twice"));
+      const std::optional<BvhChannel> channel = FindChannel(name);
+      if (!channel) return Unexpected(name, "a channel such as Xposition or Zrotation");
+      if (std::count(joint.channels.begin(), joint.channels.end(), *channel) > 0) {
+        return Error(absl::StrCat("channel ", name, ": expected once per joint, got twice"));
       }
-      joint.channels.push_back(entry->channel);
+      joint.channels.push_back(*channel);
     }
     return absl::OkStatus();
   }
@@ -350,9 +343,7 @@ class BvhFormatter {
     Indent(depth);
     absl::StrAppend(&out_, "CHANNELS ", joint.channels.size());
     for (BvhChannel channel : joint.channels) {
-      for (const ChannelName& entry : kChannelNames) {
-        if (entry.channel == channel) absl::StrAppend(&out_, " ", entry.name);
-      }
+      absl::StrAppend(&out_, " ", kChannelNames[static_cast<std::size_t>(channel)]);
     }
     out_ += '\n';
   }
@@ -371,29 +362,6 @@ class BvhFormatter {
   const BvhDocument& document_;
   std::string out_;
 };
-
-retargeting::Quaternion ChannelRotation(BvhChannel channel, double degrees) {
-  const double radians = degrees * base::kRadiansPerDegree;
-  switch (channel) {
-    case BvhChannel::kXRotation:
-      return retargeting::AxisAngle({1, 0, 0}, radians);
-    case BvhChannel::kYRotation:
-      return retargeting::AxisAngle({0, 1, 0}, radians);
-    default:
-      return retargeting::AxisAngle({0, 0, 1}, radians);
-  }
-}
-
-double* Axis(BvhChannel position_channel, retargeting::Vec3d* vector) {
-  switch (position_channel) {
-    case BvhChannel::kXPosition:
-      return &vector->x;
-    case BvhChannel::kYPosition:
-      return &vector->y;
-    default:
-      return &vector->z;
-  }
-}
 
 }  // namespace
 
@@ -421,38 +389,34 @@ absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view s
 
 std::string FormatBvh(const BvhDocument& document) { return BvhFormatter(document).Format(); }
 
-BvhKinematics::Local BvhKinematics::LocalTransform(std::size_t joint, const float* values) const {
-  Local local{document_.joints[joint].offset, {}};
-  for (BvhChannel channel : document_.joints[joint].channels) {
-    const double value = static_cast<double>(*values++);
-    if (!IsPosition(channel)) {
-      local.rotation = local.rotation * ChannelRotation(channel, value);
-    } else {
-      *Axis(channel, &local.translation) = value;
-    }
-  }
-  return local;
-}
-
-BvhKinematics::Pose BvhKinematics::PoseAt(int frame) const {
-  const std::size_t count = document_.joints.size();
-  Pose pose{std::vector<retargeting::Vec3d>(count), std::vector<retargeting::Quaternion>(count)};
-  auto& [positions, rotations] = pose;
-  const float* values =
-      document_.values.data() +
-      static_cast<std::size_t>(frame) * static_cast<std::size_t>(document_.ChannelCount());
+BvhPose PoseAt(const BvhDocument& document, int frame) {
+  const std::size_t count = document.joints.size();
+  BvhPose pose{std::vector<retargeting::Vec3d>(count), std::vector<retargeting::Quaternion>(count)};
+  const float* value =
+      document.values.data() +
+      static_cast<std::size_t>(frame) * static_cast<std::size_t>(document.ChannelCount());
   for (std::size_t j = 0; j < count; ++j) {
-    const BvhJoint& joint = document_.joints[j];
-    const Local local = LocalTransform(j, values);
-    values += joint.channels.size();
+    const BvhJoint& joint = document.joints[j];
+    retargeting::Vec3d translation = joint.offset;
+    retargeting::Quaternion rotation;
+    for (BvhChannel channel : joint.channels) {
+      const double by = static_cast<double>(*value++);
+      const int axis = AxisOf(channel);
+      if (IsRotation(channel)) {
+        rotation = rotation * retargeting::AxisAngle(retargeting::UnitAxis(axis),
+                                                     by * base::kRadiansPerDegree);
+      } else {
+        Component(translation, axis) = by;
+      }
+    }
     if (joint.parent < 0) {
-      positions[j] = local.translation;
-      rotations[j] = local.rotation;
+      pose.positions[j] = translation;
+      pose.rotations[j] = rotation;
       continue;
     }
     const std::size_t parent = static_cast<std::size_t>(joint.parent);
-    positions[j] = positions[parent] + Rotate(rotations[parent], local.translation);
-    rotations[j] = rotations[parent] * local.rotation;
+    pose.positions[j] = pose.positions[parent] + Rotate(pose.rotations[parent], translation);
+    pose.rotations[j] = pose.rotations[parent] * rotation;
   }
   return pose;
 }

@@ -17,8 +17,7 @@ namespace duet::formats::bvh {
 //
 // - an integer whose frame time this is;
 // - the common rate nearest to it (24, 30, 60, ...) whose frame time has these decimals, rounded,
-// or
-//   of four decimals and more also truncated;
+//   or of four decimals and more also truncated;
 // - an integer within half a per mille;
 // - the rate as it is.
 double RateOfFrameTime(double seconds, std::optional<int> decimals);
@@ -31,6 +30,9 @@ enum class BvhChannel {
   kYRotation,
   kZRotation,
 };
+inline bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXRotation; }
+// 0 x, 1 y, 2 z.
+inline int AxisOf(BvhChannel channel) { return static_cast<int>(channel) % 3; }
 
 // A joint or an End Site; an End Site is named after its joint, "Head" -> "Head.end".
 struct BvhJoint {
@@ -63,32 +65,16 @@ absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view s
 // The inverse of ParseBvh. Requires joints in depth-first order, as ParseBvh returns them.
 std::string FormatBvh(const BvhDocument& document);
 
-// Computes the joint positions of a frame by forward kinematics, in the file's unit.
-//
-// The rotations of a joint apply in the order of its channels, with the first one outermost.
-// Position channels replace OFFSET.
-class BvhKinematics {
- public:
-  // `document` must outlive the kinematics.
-  explicit BvhKinematics(const BvhDocument& document) : document_(document) {}
-  std::vector<retargeting::Vec3d> Positions(int frame) const { return PoseAt(frame).positions; }
-
-  // Positions and the rotations of the joints' axes, in the file's axes. [joints]
-  struct Pose {
-    std::vector<retargeting::Vec3d> positions;
-    std::vector<retargeting::Quaternion> rotations;
-  };
-  Pose PoseAt(int frame) const;
-
- private:
-  struct Local {
-    retargeting::Vec3d translation;
-    retargeting::Quaternion rotation;
-  };
-  Local LocalTransform(std::size_t joint, const float* values) const;
-
-  const BvhDocument& document_;
+// The positions of the joints and the rotations of their axes, in the file's unit and axes.
+// [joints]
+struct BvhPose {
+  std::vector<retargeting::Vec3d> positions;
+  std::vector<retargeting::Quaternion> rotations;
 };
+
+// Computes the pose of a frame by forward kinematics. The rotations of a joint apply in the order
+// of its channels, with the first one outermost. Position channels replace OFFSET.
+BvhPose PoseAt(const BvhDocument& document, int frame);
 
 }  // namespace duet::formats::bvh
 

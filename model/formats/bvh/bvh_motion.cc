@@ -28,16 +28,6 @@ using retargeting::Vec3d;
 
 constexpr double kNoTurn = 1e-4;  // radians
 
-bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXRotation; }
-
-// 0 x, 1 y, 2 z.
-int AxisOf(BvhChannel channel) {
-  const BvhChannel first = IsRotation(channel) ? BvhChannel::kXRotation : BvhChannel::kXPosition;
-  return static_cast<int>(channel) - static_cast<int>(first);
-}
-
-double Component(Vec3d a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
-
 // The order of a joint's rotation channels; absent unless it has one about each of three axes.
 std::optional<EulerOrder> RotationOrder(const BvhJoint& joint) {
   std::vector<int> axes;
@@ -139,14 +129,13 @@ void Report(const BvhDocument& document, double frame_rate_hz, retargeting::Read
 absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_view source,
                                      const BvhImportOptions& options) {
   const Range joints = JointsOfPerson(document, options.person);
-  const BvhKinematics kinematics(document);
   Report(document, FrameRate(document), options.report);
   retargeting::Character character;
   character.tree = TreeOf(PersonOf(document, joints));
   character.frame_count = document.frame_count;
   character.frame_rate_hz = FrameRate(document);
   character.pose = [&](int frame) {
-    const std::vector<Vec3d> all = kinematics.Positions(frame);
+    const std::vector<Vec3d> all = PoseAt(document, frame).positions;
     std::vector<motion::Vec3> pose;
     pose.reserve(joints.end - joints.begin);
     for (std::size_t j = joints.begin; j < joints.end; ++j) pose.push_back(ToFloat(all[j]));
@@ -248,7 +237,7 @@ absl::StatusOr<Rig> ReadRig(const BvhDocument& document, absl::string_view sourc
   if (!frame.ok()) return frame.status();
   if (!frame->has_value()) return rig;
   NoteRestFrame(**frame, options.report);
-  BvhKinematics::Pose pose = BvhKinematics(document).PoseAt(**frame);
+  const BvhPose pose = PoseAt(document, **frame);
   const auto first = static_cast<std::ptrdiff_t>(joints.begin);
   const auto last = static_cast<std::ptrdiff_t>(joints.end);
   rig.rig = RestRig(tree, rig.fit, {pose.positions.begin() + first, pose.positions.begin() + last});

@@ -80,13 +80,12 @@ TEST(BvhDocument, LinesMayEndWithCarriageReturnsAlone) {
 
 TEST(BvhDocument, AppliesChannelsInTheFilesOrder) {
   const BvhDocument document = Parse(kArm);
-  const BvhKinematics kinematics(document);
   // Yaw 90: +x goes to -z, +z to +x. The root stands where its channels say, not at OFFSET.
-  std::vector<retargeting::Vec3d> at = kinematics.Positions(0);
+  std::vector<retargeting::Vec3d> at = PoseAt(document, 0).positions;
   ExpectNear(at[0], {9, 8, 7});
   ExpectNear(at[1], {9, 8, -3});
   ExpectNear(at[2], {14, 8, -3});
-  at = kinematics.Positions(1);
+  at = PoseAt(document, 1).positions;
   ExpectNear(at[1], {0, 10, 0});
   ExpectNear(at[2], {0, 10, 5});
 }
@@ -97,7 +96,7 @@ TEST(BvhDocument, PutsTheFirstChannelOutermost) {
     const BvhDocument document = Parse(absl::StrCat(
         "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 2 ", channels,
         "\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n90 90\n"));
-    return BvhKinematics(document).Positions(0)[1];
+    return PoseAt(document, 0).positions[1];
   };
   ExpectNear(end_of("Zrotation Xrotation"), {0, 0, 1});
   ExpectNear(end_of("Xrotation Zrotation"), {-1, 0, 0});
@@ -108,7 +107,7 @@ TEST(BvhDocument, PositionChannelsBelowTheRootReplaceOffset) {
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
       "CHANNELS 3 Xposition Yposition Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
       "MOTION\nFrames: 1\nFrame Time: 1\n0 10.5 0\n");
-  ExpectNear(BvhKinematics(document).Positions(0)[2], {0, 11.5, 0});
+  ExpectNear(PoseAt(document, 0).positions[2], {0, 11.5, 0});
 }
 
 TEST(BvhDocument, WritesWhatItReads) {
@@ -168,7 +167,7 @@ TEST(BvhDocument, ReadsSeveralRoots) {
   const BvhDocument document =
       Parse(absl::StrCat("HIERARCHY\nROOT a\n", root, "ROOT b\n", root,
                          "MOTION\nFrames: 1\nFrame Time: 1\n1 2 3 4 5 6\n"));
-  ExpectNear(BvhKinematics(document).Positions(0)[1], {4, 5, 6});
+  ExpectNear(PoseAt(document, 0).positions[1], {4, 5, 6});
 }
 
 }  // namespace

@@ -30,9 +30,8 @@ motion::Clip PlayBack(const BvhDocument& written, const motion::Skeleton& skelet
   motion::Clip clip;
   clip.joint_names = skeleton.joint_names;
   clip.frame_rate_hz = 1 / document->frame_time_s;
-  const BvhKinematics kinematics(*document);
   for (int frame = 0; frame < document->frame_count; ++frame) {
-    const std::vector<retargeting::Vec3d> positions = kinematics.Positions(frame);
+    const std::vector<retargeting::Vec3d> positions = PoseAt(*document, frame).positions;
     std::vector<motion::Vec3> pose;
     for (const std::string& name : skeleton.joint_names) {
       for (std::size_t j = 0; j < positions.size(); ++j) {

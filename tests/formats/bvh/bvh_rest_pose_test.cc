@@ -36,9 +36,8 @@ Flat Flatten(const BvhDocument& standing) {
         retargeting::ShortestArc({1, 0, 0}, Unit(offset, {}), {0, 1, 0});
     flat.document.joints[j].offset = {Norm(offset), 0, 0};
   }
-  const BvhKinematics kinematics(standing);
   for (int frame = 0; frame < standing.frame_count; ++frame) {
-    const BvhKinematics::Pose pose = kinematics.PoseAt(frame);
+    const BvhPose pose = PoseAt(standing, frame);
     for (std::size_t j = 0; j < standing.joints.size(); ++j) {
       const int parent = standing.joints[j].parent;
       const auto p = static_cast<std::size_t>(parent);
