@@ -36,20 +36,28 @@ std::size_t ComponentBytes(const GltfAccessor& accessor) {
   }
 }
 
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are copied as they are");
+
+template <typename Written>
+float ReadAs(const char* bytes) {
+  Written value;
+  std::memcpy(&value, bytes, sizeof(value));
+  return static_cast<float>(value);
+}
+
 float Value(const char* bytes, int component_type) {
-  const auto low = static_cast<uint8_t>(bytes[0]);
-  if (component_type == kByte)
-    return std::max(static_cast<float>(static_cast<int8_t>(low)) / 127, -1.0f);
-  if (component_type == kUnsignedByte) return static_cast<float>(low) / 255;
-  const auto both = static_cast<uint16_t>(low | static_cast<uint8_t>(bytes[1]) << 8);
-  if (component_type == kShort)
-    return std::max(static_cast<float>(static_cast<int16_t>(both)) / 32767, -1.0f);
-  if (component_type == kUnsignedShort) return static_cast<float>(both) / 65535;
-  const uint32_t bits = both | static_cast<uint32_t>(static_cast<uint8_t>(bytes[2])) << 16 |
-                        static_cast<uint32_t>(static_cast<uint8_t>(bytes[3])) << 24;
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof(value));
-  return value;
+  switch (component_type) {
+    case kByte:
+      return std::max(ReadAs<int8_t>(bytes) / 127, -1.0f);
+    case kUnsignedByte:
+      return ReadAs<uint8_t>(bytes) / 255;
+    case kShort:
+      return std::max(ReadAs<int16_t>(bytes) / 32767, -1.0f);
+    case kUnsignedShort:
+      return ReadAs<uint16_t>(bytes) / 65535;
+    default:
+      return ReadAs<float>(bytes);
+  }
 }
 
 // "my%20file.bin" -> my file.bin. A % without a hex number stays: some programs do not escape it.

@@ -1,6 +1,7 @@
 #include "model/formats/gltf/gltf_document.h"
 
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -28,9 +29,11 @@ constexpr std::size_t kMaxSkins = 256;
 constexpr std::size_t kMaxNameBytes = 256;
 constexpr std::size_t kMaxUriBytes = motion::kMaxMotionFileBytes * 4 / 3 + 64;  // base64 data
 
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are copied as they are");
+
 uint32_t ReadUint32(absl::string_view bytes, std::size_t at) {
   uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
+  std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
 
@@ -371,25 +374,27 @@ absl::string_view WithoutPrelude(absl::string_view text) {
   return absl::StripLeadingAsciiWhitespace(base::SkipByteOrderMark(text));
 }
 
+absl::StatusOr<Parts> Split(absl::string_view content) {
+  if (absl::StartsWith(content, kMagic)) return SplitBinary(content);
+  if (absl::StartsWith(WithoutPrelude(content), "{")) return Parts{content, std::nullopt};
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected glTF, a JSON object or binary that starts with \"glTF\", got ",
+                   content.empty() ? "an empty file" : "another kind of file"));
+}
+
 absl::StatusOr<GltfDocument> Parse(absl::string_view content) {
-  Parts parts{content, std::nullopt};
-  if (absl::StartsWith(content, kMagic)) {
-    absl::StatusOr<Parts> split = SplitBinary(content);
-    if (!split.ok()) return split.status();
-    parts = *std::move(split);
-  } else if (!absl::StartsWith(WithoutPrelude(content), "{")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("expected glTF, a JSON object or binary that starts with \"glTF\", got ",
-                     content.empty() ? "an empty file" : "another kind of file"));
-  }
-  const absl::StatusOr<Json> json = base::ParseHandwrittenJson(parts.json, kMaxDepth);
+  absl::StatusOr<Parts> parts = Split(content);
+  if (!parts.ok()) return parts.status();
+  const absl::StatusOr<Json> json = base::ParseHandwrittenJson(parts->json, kMaxDepth);
   if (!json.ok()) return json.status();
   absl::StatusOr<GltfDocument> document = DocumentReader(*json).Read();
-  if (document.ok()) document->binary = std::move(parts.binary);
+  if (document.ok()) document->binary = std::move(parts->binary);
   return document;
 }
 
 }  // namespace
+
+absl::string_view JsonOf(absl::string_view content) { return Split(content)->json; }
 
 absl::StatusOr<GltfDocument> ParseGltf(absl::string_view content, absl::string_view source) {
   absl::StatusOr<GltfDocument> document = Parse(content);

@@ -88,6 +88,9 @@ struct GltfDocument {
 // Errors: INVALID_ARGUMENT "source: nodes[3].rotation: expected ..., got ...".
 absl::StatusOr<GltfDocument> ParseGltf(absl::string_view content, absl::string_view source);
 
+// The JSON of a file that ParseGltf accepts.
+absl::string_view JsonOf(absl::string_view content);
+
 // Reads a file in the document's folder.
 using GltfFileReader = std::function<absl::StatusOr<std::string>(const std::string& name)>;
 

@@ -30,6 +30,7 @@ constexpr double kLeastTravel = 0.01;
 using base::Index;
 using retargeting::Affine;
 using retargeting::Normalised;
+using retargeting::Origin;
 using retargeting::Vec3d;
 
 // The nodes of a character and their ancestors.
@@ -106,14 +107,14 @@ class Puppet {
     bool first = true;
     for (const std::vector<GltfTrack>& tracks : tracks_) {
       for (const GltfTrack& track : tracks) {
-        const double start = static_cast<double>(track.times().front());
-        const double end = static_cast<double>(track.times().back());
+        const double start = static_cast<double>(track.times.front());
+        const double end = static_cast<double>(track.times.back());
         timing.start = first ? start : std::min(timing.start, start);
         timing.end = first ? end : std::max(timing.end, end);
         first = false;
-        if (track.times().size() <= most_keys) continue;
-        most_keys = track.times().size();
-        const double rate = RateOfKeys(track.times());
+        if (track.times.size() <= most_keys) continue;
+        most_keys = track.times.size();
+        const double rate = RateOfKeys(track.times);
         timing.rate_hz = rate < kSlowestKeysHz ? kHandKeyedRateHz : std::min(rate, kFastestRateHz);
       }
     }
@@ -175,10 +176,9 @@ class Puppet {
     const GltfNode& written = document_->nodes[Index(node)];
     retargeting::Parts parts{written.translation, Normalised(written.rotation), written.scale};
     for (const GltfTrack& track : tracks_[Index(node)]) {
-      if (track.channel().path == GltfPath::kRotation) parts.rotation = track.RotationAt(seconds);
-      if (track.channel().path == GltfPath::kTranslation)
-        parts.translation = track.VectorAt(seconds);
-      if (track.channel().path == GltfPath::kScale) parts.scale = track.VectorAt(seconds);
+      if (track.channel.path == GltfPath::kRotation) parts.rotation = track.RotationAt(seconds);
+      if (track.channel.path == GltfPath::kTranslation) parts.translation = track.VectorAt(seconds);
+      if (track.channel.path == GltfPath::kScale) parts.scale = track.VectorAt(seconds);
     }
     return parts;
   }
@@ -212,45 +212,36 @@ class Puppet {
   std::vector<Affine> world_;                   // [nodes]
 };
 
-class Hierarchy {
- public:
-  explicit Hierarchy(const GltfDocument& document) : nodes_(document.nodes) {}
-
-  // Returns -1 if the nodes are in different trees.
-  int CommonAncestor(int a, int b) const {
-    while (a != b && a >= 0 && b >= 0) {
-      int& deeper = nodes_[Index(a)].depth >= nodes_[Index(b)].depth ? a : b;
-      deeper = nodes_[Index(deeper)].parent;
-    }
-    return a == b ? a : -1;
+// Returns -1 if the nodes are in different trees.
+int CommonAncestor(const std::vector<GltfNode>& nodes, int a, int b) {
+  while (a != b && a >= 0 && b >= 0) {
+    int& deeper = nodes[Index(a)].depth >= nodes[Index(b)].depth ? a : b;
+    deeper = nodes[Index(deeper)].parent;
   }
+  return a == b ? a : -1;
+}
 
-  Members MembersOf(int root) const {
-    Members members;
-    for (int node = nodes_[Index(root)].parent; node >= 0; node = nodes_[Index(node)].parent) {
-      members.above.push_back(node);
-    }
-    std::reverse(members.above.begin(), members.above.end());
-    std::vector<int> open = {root};
-    while (!open.empty()) {
-      const int node = open.back();
-      open.pop_back();
-      members.nodes.push_back(node);
-      const std::vector<int>& children = nodes_[Index(node)].children;
-      open.insert(open.end(), children.rbegin(), children.rend());
-    }
-    return members;
+Members MembersOf(const std::vector<GltfNode>& nodes, int root) {
+  Members members;
+  for (int node = nodes[Index(root)].parent; node >= 0; node = nodes[Index(node)].parent) {
+    members.above.push_back(node);
   }
-
- private:
-  const std::vector<GltfNode>& nodes_;
-};
+  std::reverse(members.above.begin(), members.above.end());
+  std::vector<int> open = {root};
+  while (!open.empty()) {
+    const int node = open.back();
+    open.pop_back();
+    members.nodes.push_back(node);
+    const std::vector<int>& children = nodes[Index(node)].children;
+    open.insert(open.end(), children.rbegin(), children.rend());
+  }
+  return members;
+}
 
 // Finds the roots of the characters, in the order of the file.
 class CharacterFinder {
  public:
-  CharacterFinder(const GltfDocument& document, const Hierarchy& hierarchy)
-      : document_(document), hierarchy_(hierarchy) {}
+  explicit CharacterFinder(const GltfDocument& document) : document_(document) {}
 
   std::vector<int> Find() {
     for (const GltfSkin& skin : document_.skins) Add(RootOf(skin.joints));
@@ -269,7 +260,7 @@ class CharacterFinder {
   int RootOf(const std::vector<int>& joints) const {
     int root = joints[0];
     for (int joint : joints) {
-      const int common = hierarchy_.CommonAncestor(root, joint);
+      const int common = CommonAncestor(document_.nodes, root, joint);
       if (common >= 0) root = common;
     }
     return root;
@@ -278,7 +269,7 @@ class CharacterFinder {
   // Two roots are one character if one is above the other, or, without skins, in the same tree.
   void Add(int root) {
     for (int& known : roots_) {
-      const int common = hierarchy_.CommonAncestor(known, root);
+      const int common = CommonAncestor(document_.nodes, known, root);
       if (common < 0) continue;
       if (common == known) return;
       if (common == root || document_.skins.empty()) {
@@ -290,7 +281,6 @@ class CharacterFinder {
   }
 
   const GltfDocument& document_;
-  const Hierarchy& hierarchy_;
   std::vector<int> roots_;
 };
 
@@ -301,13 +291,12 @@ class Importer {
       : document_(document), buffers_(document, read_file), options_(options) {}
 
   absl::StatusOr<motion::Clip> Import(absl::string_view source) {
-    const Hierarchy hierarchy(document_);
-    const std::vector<int> roots = CharacterFinder(document_, hierarchy).Find();
+    const std::vector<int> roots = CharacterFinder(document_).Find();
     if (roots.empty())
       return Error(source, "expected a skeleton, got no skin and no animated node");
     if (options_.report != nullptr) options_.report->people = static_cast<int>(roots.size());
     const std::size_t person = Index(options_.person) < roots.size() ? Index(options_.person) : 0;
-    Puppet puppet(document_, hierarchy.MembersOf(roots[person]));
+    Puppet puppet(document_, MembersOf(document_.nodes, roots[person]));
     if (puppet.members().nodes.size() > motion::kMaxFileJoints) {
       return Error(source, absl::StrCat("skeleton: expected at most ", motion::kMaxFileJoints,
                                         " nodes, got ", puppet.members().nodes.size()));
@@ -397,12 +386,9 @@ class Importer {
     const std::optional<double> stated = StatedRate();
     timing.rate_hz = options_.frame_rate_hz.value_or(stated.value_or(timing.rate_hz));
     if (options_.report != nullptr) {
-      options_.report->frame_rate = stated.has_value()
-                                        ? retargeting::Setting{absl::StrCat(timing.rate_hz, " Hz"),
-                                                               retargeting::Origin::kFile, ""}
-                                        : retargeting::Setting{absl::StrCat(timing.rate_hz, " Hz"),
-                                                               retargeting::Origin::kGuessed,
-                                                               "as the animation's keys suggest"};
+      options_.report->frame_rate = retargeting::Setting{
+          absl::StrCat(timing.rate_hz, " Hz"), stated ? Origin::kFile : Origin::kGuessed,
+          stated ? "" : "as the animation's keys suggest"};
     }
     // Rounding must not drop the last frame.
     const double frames = std::floor((timing.end - timing.start) * timing.rate_hz + 1e-3) + 1;
@@ -430,7 +416,6 @@ class Importer {
   // Unit and up axis come from the file unless the caller of the import gave them.
   void ReportOrigins() const {
     if (options_.report == nullptr) return;
-    using retargeting::Origin;
     std::optional<retargeting::Setting>& unit = options_.report->unit;
     std::optional<retargeting::Setting>& up_axis = options_.report->up_axis;
     if (unit && !options_.metres_per_unit.has_value()) unit->origin = Origin::kFile;

@@ -1,11 +1,9 @@
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/index.h"
 #include "model/formats/gltf/gltf_document.h"
@@ -23,19 +21,9 @@ using retargeting::Quaternion;
 using retargeting::Vec3d;
 
 constexpr double kNoTurn = 1e-6;  // radians
-constexpr std::size_t kJsonBegins = 20, kJsonLengthAt = 12, kAlignment = 4;
+constexpr std::size_t kAlignment = 4;
 
 using base::Index;
-
-// The document's text; the first chunk of a .glb. Requires a file that ParseGltf accepts.
-absl::string_view JsonOf(absl::string_view content) {
-  if (!absl::StartsWith(content, "glTF")) return content;
-  std::size_t length = 0;
-  for (std::size_t byte = 4; byte-- > 0;) {
-    length = length << 8 | static_cast<uint8_t>(content[kJsonLengthAt + byte]);
-  }
-  return content.substr(kJsonBegins, length);
-}
 
 // A node at rest, in its parent's axes or the world's. `scale` is the mean over the axes.
 struct Place {
@@ -179,30 +167,11 @@ absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument&
   return GltfWriter(std::move(json), std::move(all));
 }
 
-// A character of a file.
-struct RigFile {
-  GltfDocument document;
-  std::vector<int> nodes;
-  retargeting::CharacterFit fit;
-
-  RigAnimator Animator() const { return {document, nodes, fit}; }
-};
-
-absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view source,
-                                    const GltfFileReader& read_file,
-                                    const GltfImportOptions& options) {
-  absl::StatusOr<GltfDocument> document = ParseGltf(content, source);
-  if (!document.ok()) return document.status();
-  RigFile file{*std::move(document), {}, {}};
-  GltfImportOptions reading = options;
-  reading.fit = &file.fit;
-  reading.nodes = &file.nodes;
-  const absl::StatusOr<motion::Clip> read = FromGltf(file.document, source, read_file, reading);
-  if (!read.ok()) return read.status();
-  const absl::StatusOr<std::optional<int>> frame =
-      retargeting::FindRestFrame(file.Animator().Rig(), *read, source);
-  if (!frame.ok()) return frame.status();
-  if (!frame->has_value()) return file;
+// The nodes at rest must be a standing person; `read` is the motion of the rig.
+absl::Status CheckRest(const retargeting::CharacterRig& rig, const motion::Clip& read,
+                       absl::string_view source) {
+  const absl::StatusOr<std::optional<int>> frame = retargeting::FindRestFrame(rig, read, source);
+  if (!frame.ok() || !frame->has_value()) return frame.status();
   return absl::InvalidArgumentError(
       absl::StrCat(source,
                    ": rig: rest pose: expected a standing person, got nodes that make one only in "
@@ -214,14 +183,23 @@ absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
                                         absl::string_view source, const GltfFileReader& read_file,
                                         const GltfImportOptions& options, GltfContainer container) {
-  const absl::StatusOr<RigFile> file = ReadRigFile(content, source, read_file, options);
-  if (!file.ok()) return file.status();
-  RigAnimator animator = file->Animator();
+  const absl::StatusOr<GltfDocument> document = ParseGltf(content, source);
+  if (!document.ok()) return document.status();
+  std::vector<int> nodes;
+  retargeting::CharacterFit fit;
+  GltfImportOptions reading = options;
+  reading.fit = &fit;
+  reading.nodes = &nodes;
+  const absl::StatusOr<motion::Clip> read = FromGltf(*document, source, read_file, reading);
+  if (!read.ok()) return read.status();
+  RigAnimator animator(*document, nodes, fit);
+  absl::Status status = CheckRest(animator.Rig(), *read, source);
+  if (!status.ok()) return status;
   const absl::StatusOr<std::vector<CharacterPose>> poses =
       TransferToRig(clip, animator.Rig(), source);
   if (!poses.ok()) return poses.status();
-  GltfBuffers buffers(file->document, read_file);
-  absl::StatusOr<GltfWriter> writer = Gather(content, file->document, &buffers);
+  GltfBuffers buffers(*document, read_file);
+  absl::StatusOr<GltfWriter> writer = Gather(content, *document, &buffers);
   if (!writer.ok()) return writer.status();
   animator.Write(*poses, clip.frame_rate_hz, &*writer);
   return container == GltfContainer::kBinary ? writer->Binary() : writer->Text();

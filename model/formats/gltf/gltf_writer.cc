@@ -1,7 +1,6 @@
 #include "model/formats/gltf/gltf_writer.h"
 
 #include <algorithm>
-#include <cstring>
 #include <initializer_list>
 #include <limits>
 #include <utility>
@@ -23,8 +22,10 @@ constexpr uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A,
                    kBinaryChunk = 0x004E4942;
 constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
 
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are copied as they are");
+
 void AppendWord(uint32_t word, std::string* bytes) {
-  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(word >> shift));
+  bytes->append(reinterpret_cast<const char*>(&word), sizeof word);
 }
 
 void PadTo4(char with, std::string* bytes) {
@@ -80,11 +81,7 @@ void GltfWriter::EndAccessor() {
 int GltfWriter::AddFloats(const char* type, std::size_t components,
                           const std::vector<float>& values) {
   const int accessor = AddAccessor(kFloat, type, values.size() / components);
-  for (float value : values) {
-    uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    AppendWord(bits, &buffer_);
-  }
+  buffer_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
   EndAccessor();
   return accessor;
 }
@@ -94,9 +91,8 @@ int GltfWriter::AddWhole(int component_type, const char* type, std::size_t compo
                          const std::vector<Value>& values) {
   const int accessor = AddAccessor(component_type, type, values.size() / components);
   for (Value value : values) {
-    for (std::size_t byte = 0; byte < sizeof(Written); ++byte) {
-      buffer_.push_back(static_cast<char>(static_cast<uint32_t>(value) >> (8 * byte)));
-    }
+    const auto written = static_cast<Written>(value);
+    buffer_.append(reinterpret_cast<const char*>(&written), sizeof written);
   }
   EndAccessor();
   return accessor;
