@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/retargeting/joint_mapping.h"
 #include "model/retargeting/joint_names.h"
 
 namespace duet::retargeting {
@@ -49,7 +50,7 @@ class Finder {
   std::vector<int> Below(int top) const {
     std::vector<int> joints;
     for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
-      if (IsBelow(joint, top)) joints.push_back(joint);
+      if (IsAtOrBelow(parents_, joint, top)) joints.push_back(joint);
     }
     return joints;
   }
@@ -59,7 +60,7 @@ class Finder {
     int outermost = top, most = 0;
     for (const int joint : Below(top)) {
       int steps = 0;
-      for (int at = joint; at != top; at = ParentOf(at)) ++steps;
+      for (int at = joint; at != top; at = parents_[static_cast<std::size_t>(at)]) ++steps;
       if (steps > most) outermost = joint;
       most = std::max(most, steps);
     }
@@ -76,13 +77,6 @@ class Finder {
       if (parsed_[i] == name) return static_cast<int>(i);
     }
     return -1;
-  }
-
-  int ParentOf(int joint) const { return parents_[static_cast<std::size_t>(joint)]; }
-
-  bool IsBelow(int joint, int top) const {
-    while (joint >= 0 && joint != top) joint = ParentOf(joint);
-    return joint == top;
   }
 
   std::string SomeNames() const {

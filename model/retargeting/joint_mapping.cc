@@ -26,6 +26,15 @@ constexpr Vec3d kLeft = {1, 0, 0}, kRight = {-1, 0, 0}, kUp = {0, 1, 0}, kDown =
 
 using base::Index;
 
+// Joints that define a character's proportions, as indices into its tree.
+struct Landmarks {
+  int head = -1;
+  std::optional<motion::JointPair> shoulders, hips;
+};
+
+// The joint positions of a straightened character (JointMap::straight). They depend only on bone
+// lengths, so that they are equal for every clip of a rig and independent of its rest pose. The
+// origin is the joint where legs and trunk meet. [names]
 class StraightFigure {
  public:
   StraightFigure(const JointTree& tree, const Landmarks& landmarks)
@@ -43,7 +52,7 @@ class StraightFigure {
     }
     if (landmarks_.shoulders) {
       const motion::JointPair& shoulders = *landmarks_.shoulders;
-      const int chest = CommonAncestor(tree_, shoulders.left, shoulders.right);
+      const int chest = CommonAncestor(tree_.parents, shoulders.left, shoulders.right);
       if (chest >= 0) PlaceLimbs(shoulders, chest, kUp, kLeft, kRight);
     }
     std::vector<motion::Vec3> straight;
@@ -60,10 +69,10 @@ class StraightFigure {
   // The joint at which legs and trunk separate; -1 without hips.
   int Base() const {
     if (!landmarks_.hips) return -1;
-    const int pelvis = CommonAncestor(tree_, landmarks_.hips->left, landmarks_.hips->right);
+    const int pelvis = CommonAncestor(tree_.parents, landmarks_.hips->left, landmarks_.hips->right);
     const int top = landmarks_.shoulders ? landmarks_.shoulders->left : landmarks_.head;
     if (pelvis < 0 || top < 0) return pelvis;
-    return CommonAncestor(tree_, pelvis, top);
+    return CommonAncestor(tree_.parents, pelvis, top);
   }
 
   Vec3d Offset(int ancestor, int joint) const {
@@ -86,34 +95,26 @@ class StraightFigure {
   void PlaceLimb(int start, Vec3d at, Vec3d direction) {
     places_[Index(start)] = at;
     for (std::size_t j = Index(start) + 1; j < places_.size(); ++j) {
-      if (!IsAtOrBelow(tree_, static_cast<int>(j), start)) continue;
+      if (!IsAtOrBelow(tree_.parents, static_cast<int>(j), start)) continue;
       places_[j] = PlaceAfterParent(j, direction);
     }
   }
 
   const JointTree& tree_;
-  const Landmarks& landmarks_;
+  const Landmarks landmarks_;
   std::vector<Vec3d> places_;  // [names]
 };
 
 }  // namespace
 
-bool IsAtOrBelow(const JointTree& tree, int joint, int ancestor) {
-  while (joint > ancestor) joint = tree.parents[Index(joint)];
+bool IsAtOrBelow(const std::vector<int>& parents, int joint, int ancestor) {
+  while (joint >= 0 && joint != ancestor) joint = parents[Index(joint)];
   return joint == ancestor;
 }
 
-int CommonAncestor(const JointTree& tree, int a, int b) {
-  // Parents precede their children, so the later of two different joints is not an ancestor.
-  while (a != b && a >= 0 && b >= 0) {
-    int& later = a > b ? a : b;
-    later = tree.parents[Index(later)];
-  }
-  return a == b ? a : -1;
-}
-
-std::vector<motion::Vec3> PullStraight(const JointTree& tree, const Landmarks& landmarks) {
-  return StraightFigure(tree, landmarks).Build();
+int CommonAncestor(const std::vector<int>& parents, int a, int b) {
+  while (a >= 0 && !IsAtOrBelow(parents, b, a)) a = parents[Index(a)];
+  return a;
 }
 
 namespace {
@@ -182,28 +183,20 @@ class Mapper {
     for (const std::string& name : names) used_.push_back(absl::StartsWith(name, "__"));
   }
 
-  absl::StatusOr<JointMap> MapPoses(const motion::Poses& poses, const JointOverrides& overrides) {
-    absl::Status status = ApplyOverrides(overrides);
-    if (!status.ok()) return status;
-    measured_ = Spread(poses);
-    const bool identical = MapIdentity();
-    if (!identical) MapAliases();
-    if (!identical) PlaceTrunk();
-    return Finish();
-  }
-
-  absl::StatusOr<JointMap> MapTree(const JointTree& tree, const JointOverrides& overrides,
-                                   MissingToes missing_toes) {
+  // Distances are those of the straightened tree, or means over `poses` if there is no tree.
+  absl::StatusOr<JointMap> Map(const JointTree* tree, const motion::Poses& poses,
+                               const JointOverrides& overrides, MissingToes missing_toes) {
     absl::Status status = ApplyOverrides(overrides);
     if (!status.ok()) return status;
     const bool identical = MapIdentity();
     if (!identical) MapAliases();
     if (missing_toes == MissingToes::kAtTheFeet) PlaceMissingToes();
-    const std::vector<motion::Vec3> straight = PullStraight(tree, FindLandmarks());
-    measured_ = {straight};
+    std::vector<motion::Vec3> straight;
+    if (tree != nullptr) straight = StraightFigure(*tree, FindLandmarks()).Build();
+    measured_ = tree != nullptr ? std::vector{absl::MakeConstSpan(straight)} : Spread(poses);
     if (!identical) PlaceTrunk();
     absl::StatusOr<JointMap> map = Finish();
-    if (map.ok()) map->straight = ApplyJointMap(*map, straight);
+    if (map.ok() && tree != nullptr) map->straight = ApplyJointMap(*map, straight);
     return map;
   }
 
@@ -280,10 +273,13 @@ class Mapper {
   // Maps the joints that depend on positions, in `measured_`.
   void PlaceTrunk() {
     PlaceNeck();
-    PlaceTorso();
-    PlaceInTrunk("chest", "neck", kChestHeight);
-    PlaceInTrunk("spine", "chest", kSpineHeight);
-    PlaceInTrunk("hips", "neck", kHipsHeight);
+    PlaceInTrunk("torso", "neck", 0.5f, "the spine joint nearest to half way from hips to neck",
+                 "half way from hips to neck; no spine joint is near");
+    constexpr char kNearest[] = "the spine joint nearest to its place";
+    constexpr char kBetween[] = "between hips and neck; no spine joint is near";
+    PlaceInTrunk("chest", "neck", kChestHeight, kNearest, kBetween);
+    PlaceInTrunk("spine", "chest", kSpineHeight, kNearest, kBetween);
+    PlaceInTrunk("hips", "neck", kHipsHeight, kNearest, kBetween);
     PlaceHeadTop();
     RaiseHead();
   }
@@ -437,55 +433,42 @@ class Mapper {
     return best;
   }
 
+  // Maps a joint to the unused one that FindNearest returns, or else to the place itself.
+  template <typename Fits>
+  void PlaceNear(int joint, const JointSource& place, float reach, Fits fits, const char* why_joint,
+                 const char* why_place) {
+    const int best = FindNearest(place, reach, fits);
+    if (best >= 0) {
+      Take(joint, best);
+    } else {
+      found_[static_cast<size_t>(joint)] = place;
+    }
+    Note(joint, best >= 0 ? why_joint : why_place);
+  }
+
   void PlaceNeck() {
     const int neck = skeleton_.Find("neck");
     const int left = skeleton_.Find("left_shoulder"), right = skeleton_.Find("right_shoulder");
     if (neck < 0 || Found(neck)) return;
     if (!Found(left) || !Found(right)) return MapByAlias(neck);
-    const JointSource middle = Mix({{&SourceOf(left), 0.5f}, {&SourceOf(right), 0.5f}});
-    const float width = MeanDistance(SourceOf(left), SourceOf(right));
-    const int best = FindNearest(middle, width, IsNeck);
-    if (best >= 0) {
-      Take(neck, best);
-      Note(neck, "the neck joint nearest to half way between the shoulders");
-    } else {
-      found_[static_cast<size_t>(neck)] = middle;
-      Note(neck, "half way between the shoulders; no neck joint is near");
-    }
+    PlaceNear(neck, Mix({{&SourceOf(left), 0.5f}, {&SourceOf(right), 0.5f}}),
+              MeanDistance(SourceOf(left), SourceOf(right)), IsNeck,
+              "the neck joint nearest to half way between the shoulders",
+              "half way between the shoulders; no neck joint is near");
   }
 
-  void PlaceTorso() {
-    const int neck = skeleton_.Find("neck"), torso = skeleton_.Find("torso");
-    if (torso < 0 || Found(torso)) return;
-    if (!HasSpineEnds()) return MapByAlias(torso);
-    const JointSource middle = Mix({{&SourceOf(neck), 0.5f},
-                                    {&SourceOf(skeleton_.hips->left), 0.25f},
-                                    {&SourceOf(skeleton_.hips->right), 0.25f}});
-    const int best = FindNearest(middle, kTorsoReach * SpineLength(), IsSpine);
-    if (best >= 0) {
-      Take(torso, best);
-      Note(torso, "the spine joint nearest to half way from hips to neck");
-    } else {
-      found_[static_cast<size_t>(torso)] = middle;
-      Note(torso, "half way from hips to neck; no spine joint is near");
-    }
-  }
-
-  // Places a joint of the trunk that no name gives, on the way from the middle of the hip joints to
-  // the joint `end`: the nearest spine joint, or a point.
-  void PlaceInTrunk(const char* target, const char* end, float height) {
+  // Places a joint of the trunk on the way from the middle of the hip joints to the joint `end`:
+  // the nearest spine joint, or a point. Without a spine, a name must give it.
+  void PlaceInTrunk(const char* target, const char* end, float height, const char* why_joint,
+                    const char* why_place) {
     const int joint = skeleton_.Find(target), to = skeleton_.Find(end);
-    if (joint < 0 || Found(joint) || !Found(to) || !HasSpineEnds()) return;
-    const JointSource place = Mix({{&SourceOf(to), height},
-                                   {&SourceOf(skeleton_.hips->left), (1 - height) / 2},
-                                   {&SourceOf(skeleton_.hips->right), (1 - height) / 2}});
-    const int best = FindNearest(place, kTorsoReach * SpineLength(), IsSpine);
-    if (best >= 0) {
-      Take(joint, best);
-      return Note(joint, "the spine joint nearest to its place");
-    }
-    found_[static_cast<size_t>(joint)] = place;
-    Note(joint, "between hips and neck; no spine joint is near");
+    if (joint < 0 || Found(joint)) return;
+    if (!Found(to) || !HasSpineEnds()) return MapByAlias(joint);
+    PlaceNear(joint,
+              Mix({{&SourceOf(to), height},
+                   {&SourceOf(skeleton_.hips->left), (1 - height) / 2},
+                   {&SourceOf(skeleton_.hips->right), (1 - height) / 2}}),
+              kTorsoReach * SpineLength(), IsSpine, why_joint, why_place);
   }
 
   // Above the head, in the direction from hips to neck, unless the file has an end of the head that
@@ -558,14 +541,15 @@ absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tr
                                    const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides,
                                    std::vector<JointReading>* readings, MissingToes missing_toes) {
-  return Mapper(source, tree.names, skeleton, readings).MapTree(tree, overrides, missing_toes);
+  return Mapper(source, tree.names, skeleton, readings).Map(&tree, {}, overrides, missing_toes);
 }
 
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,
                                    const motion::Poses& poses, const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides,
                                    std::vector<JointReading>* readings) {
-  return Mapper(source, names, skeleton, readings).MapPoses(poses, overrides);
+  return Mapper(source, names, skeleton, readings)
+      .Map(nullptr, poses, overrides, MissingToes::kRejected);
 }
 
 std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose) {

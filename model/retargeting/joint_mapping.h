@@ -24,21 +24,10 @@ struct JointTree {
   std::vector<Vec3d> offsets;  // [names], from the parent and in its axes, in any unit
 };
 
+// `parents` are those of joints, -1 for a root.
+bool IsAtOrBelow(const std::vector<int>& parents, int joint, int ancestor);
 // The nearest common ancestor of `a` and `b`, which may be one of them; -1 if there is none.
-int CommonAncestor(const JointTree& tree, int a, int b);
-bool IsAtOrBelow(const JointTree& tree, int joint, int ancestor);
-
-// Joints that define a character's proportions, as indices into its tree.
-struct Landmarks {
-  int head = -1;
-  std::optional<motion::JointPair> shoulders, hips;
-};
-
-// The joint positions of a straightened character: the trunk upright along y with the summed length
-// of its bones, arms stretched to the sides, legs hanging. The positions depend only on bone
-// lengths, so that they are equal for every clip of a rig and independent of its rest pose. The
-// origin is the joint where legs and trunk meet. [names]
-std::vector<motion::Vec3> PullStraight(const JointTree& tree, const Landmarks& landmarks);
+int CommonAncestor(const std::vector<int>& parents, int a, int b);
 
 // Joints that the user specifies: skeleton joint -> joint of the file. They override every rule.
 using JointOverrides = std::map<std::string, std::string>;
@@ -55,8 +44,9 @@ struct JointSource {
 // The source in a file of each of a skeleton's joints.
 struct JointMap {
   std::vector<JointSource> sources;  // [skeleton joints]
-  // The straightened character (PullStraight), if the file has a hierarchy.
-  std::vector<motion::Vec3> straight;  // [skeleton joints]
+  // If the file has a hierarchy: the straightened character, whose trunk is upright along y with
+  // the summed length of its bones, arms stretched to the sides, legs hanging. [skeleton joints]
+  std::vector<motion::Vec3> straight;
 };
 
 // What happens if a file has no joint for a skeleton's toes, the joints beyond its feet.

@@ -11,6 +11,7 @@
 #include "model/base/index.h"
 #include "model/base/median.h"
 #include "model/retargeting/foot_pose.h"
+#include "model/retargeting/joint_mapping.h"
 
 namespace duet::retargeting {
 namespace {
@@ -40,19 +41,14 @@ class RigBuilder {
     return children_[static_cast<size_t>(joint)];
   }
 
-  bool IsAtOrBelow(int joint, int ancestor) const {
-    while (joint != ancestor && joint >= 0) joint = parents_[static_cast<size_t>(joint)];
-    return joint == ancestor;
-  }
-
   bool IsLeg(int joint) const {
-    return skeleton_.hips &&
-           (IsAtOrBelow(joint, skeleton_.hips->left) || IsAtOrBelow(joint, skeleton_.hips->right));
+    return skeleton_.hips && (IsAtOrBelow(parents_, joint, skeleton_.hips->left) ||
+                              IsAtOrBelow(parents_, joint, skeleton_.hips->right));
   }
 
   bool LeadsToAHip(int joint) const {
-    return skeleton_.hips &&
-           (IsAtOrBelow(skeleton_.hips->left, joint) || IsAtOrBelow(skeleton_.hips->right, joint));
+    return skeleton_.hips && (IsAtOrBelow(parents_, skeleton_.hips->left, joint) ||
+                              IsAtOrBelow(parents_, skeleton_.hips->right, joint));
   }
 
   // The root's child that leads upwards; -1 if every child leads to a hip.
@@ -426,15 +422,28 @@ void RigFitter::TurnFeet(const std::vector<Quaternion>& previous) {
   }
 }
 
-std::vector<Vec3d> JointPositions(const Rig& rig, const RigPose& pose) {
-  std::vector<Vec3d> at(rig.joints.size());
-  std::vector<Quaternion> world(rig.joints.size());
+namespace {
+
+// [rig joints]
+std::vector<Quaternion> WorldRotations(const Rig& rig, const RigPose& pose) {
+  std::vector<Quaternion> world;
   for (std::size_t j = 0; j < rig.joints.size(); ++j) {
-    const RigJoint& joint = rig.joints[j];
-    const bool root = joint.parent < 0;
-    at[j] = root ? pose.root_position
-                 : at[Index(joint.parent)] + Rotate(world[Index(joint.parent)], joint.offset);
-    world[j] = root ? pose.rotations[j] : world[Index(joint.parent)] * pose.rotations[j];
+    const int parent = rig.joints[j].parent;
+    const Quaternion local = pose.rotations[j];
+    world.push_back(parent < 0 ? local : world[Index(parent)] * local);
+  }
+  return world;
+}
+
+}  // namespace
+
+std::vector<Vec3d> JointPositions(const Rig& rig, const RigPose& pose) {
+  const std::vector<Quaternion> world = WorldRotations(rig, pose);
+  std::vector<Vec3d> at;
+  for (const RigJoint& joint : rig.joints) {
+    const int parent = joint.parent;
+    at.push_back(parent < 0 ? pose.root_position
+                            : at[Index(parent)] + Rotate(world[Index(parent)], joint.offset));
   }
   return at;
 }
@@ -445,16 +454,6 @@ constexpr double kBlockSeconds = 1;
 
 int BlockFrames(double frame_rate_hz) {
   return std::max(1, static_cast<int>(std::lround(kBlockSeconds * frame_rate_hz)));
-}
-
-std::vector<Quaternion> WorldRotations(const Rig& rig, const RigPose& pose) {
-  std::vector<Quaternion> world;
-  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
-    const int parent = rig.joints[j].parent;
-    const Quaternion local = pose.rotations[j];
-    world.push_back(parent < 0 ? local : world[static_cast<std::size_t>(parent)] * local);
-  }
-  return world;
 }
 
 // From `a` (share 0) to `b` (share 1), joint by joint in the world. Both have the same positions.
