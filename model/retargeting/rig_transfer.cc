@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -105,117 +104,6 @@ class PoleTracker {
   Vec3d along_, pole_;
 };
 
-// The clip's joint in a role that is one joint, which wrists and ankles always are.
-int JointOf(const BodyRoles& roles, const char* role) {
-  return roles.body.sources[Index(motion::SbuSkeleton().Find(role))].terms[0].joint;
-}
-
-// The rig's joint at `tip`, if it is another one than at `end`.
-int RigJoint(const CharacterRig& rig, int end, int tip) {
-  const auto& at_end = rig.joints.sources[Index(end)].terms;
-  const auto& at_tip = rig.joints.sources[Index(tip)].terms;
-  if (at_tip.size() != 1 || at_end.size() != 1) return -1;
-  for (int joint = rig.parents[Index(at_tip[0].joint)]; joint >= 0;
-       joint = rig.parents[Index(joint)]) {
-    if (joint == at_end[0].joint) return at_tip[0].joint;
-  }
-  return -1;
-}
-
-// Rotations of a rig's feet, toes and hands from a clip with joints beyond ankles and wrists.
-// Without such joints, feet and hands keep the rotations that they are given.
-class LimbEnds {
- public:
-  enum class Side { kLeft, kRight };
-
-  // `clip` must outlive the object. `landmarks` are the clip's joints on the rig at rest.
-  // [clip joints], metres.
-  LimbEnds(const motion::Clip& clip, const BodyRoles& roles, const CharacterRig& rig,
-           absl::Span<const motion::Vec3> landmarks)
-      : clip_(clip) {
-    ends_[0].ankle = JointOf(roles, "left_foot");
-    ends_[1].ankle = JointOf(roles, "right_foot");
-    ends_[0].wrist = JointOf(roles, "left_hand");
-    ends_[1].wrist = JointOf(roles, "right_hand");
-    const auto between = [&landmarks](int from, int to) {
-      return ToDouble(landmarks[Index(to)]) - ToDouble(landmarks[Index(from)]);
-    };
-    if (roles.toes.has_value()) {
-      ends_[0].toe = roles.toes->left, ends_[1].toe = roles.toes->right;
-      foot_slope_ = FootSlopeOnFloor({ends_[0].ankle, ends_[1].ankle}, *roles.toes, clip);
-      toe_height_ = HeightOnFloor(*roles.toes, clip);
-    }
-    if (roles.hands.has_value())
-      ends_[0].hand = roles.hands->left, ends_[1].hand = roles.hands->right;
-    for (Ends& ends : ends_) {
-      if (ends.toe >= 0) {
-        ends.foot_rest = between(ends.ankle, ends.toe);
-        ends.rig_toe = RigJoint(rig, ends.ankle, ends.toe);
-      }
-      if (ends.hand >= 0) ends.hand_rest = between(ends.wrist, ends.hand);
-    }
-  }
-
-  // The rig's toe joint below `ankle`, or -1 if the rig or the clip has none.
-  int ToeJoint(Side side) const { return At(side).rig_toe; }
-
-  // The rotation of the rig's foot at rest. `expected` is that of a foot that points ahead; `flat`:
-  // the leg stands at rest, so a foot of a usual slope is level on the floor.
-  Quaternion FootAtRest(Side side, Quaternion expected, bool flat) const {
-    const Ends& ends = At(side);
-    if (ends.rig_toe < 0 || Norm(ends.foot_rest) < kNoLength) return expected;
-    const Vec3d foot = Rotate(Inverse(expected), ends.foot_rest);
-    const double slope = std::atan2(-foot.y, std::hypot(foot.x, foot.z));
-    const double outwards = std::atan2(foot.x, foot.z);
-    if (flat && slope > kLeastSlope && slope < kMostSlope && std::abs(outwards) < kMostToeOut) {
-      return expected * AxisAngle({0, 1, 0}, outwards);
-    }
-    // A foot that hangs or points elsewhere takes its slope from the clip's.
-    return FootRotationWithToe(expected, {}, ends.foot_rest, foot_slope_);
-  }
-
-  // The foot's rotation in the world; `without_toe` is that of FootRotation.
-  Quaternion Foot(Side side, int frame, Quaternion without_toe) const {
-    const Ends& ends = At(side);
-    if (ends.toe < 0) return without_toe;
-    return FootRotationWithToe(without_toe, Position(frame, ends.ankle), Position(frame, ends.toe),
-                               foot_slope_);
-  }
-
-  // The rotation of the toes on `foot`: level on the floor while the heel is up.
-  Quaternion Toes(Side side, int frame, Quaternion foot) const {
-    return FootRotation(foot, Position(frame, At(side).toe), toe_height_);
-  }
-
-  // The hand's rotation from its rest pose, on a forearm rotated by `forearm`.
-  Quaternion Hand(Side side, int frame, Quaternion forearm) const {
-    const Ends& ends = At(side);
-    if (ends.hand < 0 || Norm(ends.hand_rest) < kNoLength) return forearm;
-    const Vec3d straight = Unit(Rotate(forearm, ends.hand_rest), {0, 1, 0});
-    const Vec3d hand = Position(frame, ends.hand) - Position(frame, ends.wrist);
-    if (Norm(hand) < kNoLength) return forearm;
-    const Vec3d direction = Unit(hand, straight);
-    const Vec3d axis =
-        Unit(Cross(straight, Rotate(forearm, {0, 0, 1})), Rotate(forearm, {1, 0, 0}));
-    return ShortestArc(straight, direction, axis) * forearm;
-  }
-
- private:
-  // The ends of one side. Indices are those of the clip's joints, -1 if it has none.
-  struct Ends {
-    int ankle = -1, toe = -1, wrist = -1, hand = -1;
-    Vec3d foot_rest, hand_rest;  // from ankle to toe and from wrist to hand on the rig at rest
-    int rig_toe = -1;            // of the rig
-  };
-
-  const Ends& At(Side side) const { return ends_[side == Side::kLeft ? 0 : 1]; }
-  Vec3d Position(int frame, int joint) const { return ToDouble(clip_.at(frame, joint)); }
-
-  const motion::Clip& clip_;
-  std::array<Ends, 2> ends_;
-  double foot_slope_ = 0, toe_height_ = 0;  // of standing feet: radians, metres
-};
-
 std::vector<motion::Vec3> ToFloats(const std::vector<Vec3d>& positions) {
   std::vector<motion::Vec3> floats;
   for (const Vec3d& position : positions) floats.push_back(ToFloat(position));
@@ -235,30 +123,32 @@ struct Limb {
   double upper_length = 0, lower_length = 0;          // metres
   Quaternion upper_rest, lower_rest;                  // Frame(bone, hinge)
   bool leg = false;
-  LimbEnds::Side side = LimbEnds::Side::kLeft;
   PoleTracker pole;
+  // The joint beyond the end, a toe or knuckles: of the follower, -1 if it has none, and its offset
+  // from the end on the rig at rest.
+  int tip = -1;
+  Vec3d tip_rest;
+  int rig_toe = -1;  // of a leg: the rig's joint at the tip, -1 if it is that of the foot
 };
-
-// The body's joints of a clip.
-motion::Clip BodyOf(const motion::Clip& clip, const JointMap& body) {
-  motion::Clip mapped;
-  mapped.joint_names = motion::SbuSkeleton().joint_names;
-  mapped.frame_rate_hz = clip.frame_rate_hz;
-  for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    mapped.Append(ApplyJointMap(body, clip.poses[frame]));
-  }
-  return mapped;
-}
 
 class Transfer {
  public:
-  // `body` maps the body's joints to the rig's.
-  Transfer(const CharacterRig& rig, JointMap body, const LimbEnds& ends, absl::string_view source)
-      : rig_(rig),
-        joints_(std::move(body)),
-        ends_(ends),
+  // `follower` must outlive the object.
+  Transfer(const motion::Clip& follower, BodyRoles roles, const CharacterRig& rig,
+           absl::string_view source)
+      : follower_(follower),
+        roles_(std::move(roles)),
+        rig_(rig),
+        joints_(Compose(rig.joints, roles_.body)),
         skeleton_(motion::SbuSkeleton()),
-        source_(source) {}
+        source_(source),
+        rig_rest_(ApplyJointMap(rig.joints, ToFloats(rig.positions))) {
+    body_.joint_names = skeleton_.joint_names;
+    body_.frame_rate_hz = follower.frame_rate_hz;
+    for (int frame = 0; frame < follower.frame_count(); ++frame) {
+      body_.Append(ApplyJointMap(roles_.body, follower.poses[frame]));
+    }
+  }
 
   absl::Status Prepare() {
     for (const motion::Vec3& landmark : ApplyJointMap(joints_, ToFloats(rig_.positions))) {
@@ -273,12 +163,17 @@ class Transfer {
     return FindTrunk();
   }
 
-  // `clip` has the body's joints.
-  std::vector<CharacterPose> Run(const motion::Clip& clip) {
-    ankle_height_ = AnkleHeightOnFloor(skeleton_, clip);
-    leg_ratio_ = LegRatio(clip);
+  std::vector<CharacterPose> Run() {
+    ankle_height_ = AnkleHeightOnFloor(skeleton_, body_);
+    leg_ratio_ = LegRatio();
+    if (roles_.toes.has_value()) {
+      const motion::JointPair ankles{FollowersJoint(limbs_[2].clip_end),
+                                     FollowersJoint(limbs_[3].clip_end)};
+      foot_slope_ = FootSlopeOnFloor(ankles, *roles_.toes, follower_);
+      toe_height_ = HeightOnFloor(*roles_.toes, follower_);
+    }
     std::vector<CharacterPose> poses;
-    for (int frame = 0; frame < clip.frame_count(); ++frame) poses.push_back(Pose(clip, frame));
+    for (int frame = 0; frame < body_.frame_count(); ++frame) poses.push_back(Pose(frame));
     return poses;
   }
 
@@ -292,6 +187,9 @@ class Transfer {
   }
   Vec3d RestAt(int joint) const { return rig_.positions[Index(joint)]; }
 
+  // The follower's joint at a joint of the body's limbs, each of which is one joint.
+  int FollowersJoint(int joint) const { return roles_.body.sources[Index(joint)].terms[0].joint; }
+
   // The direction that the rest pose faces.
   void FindBody() {
     const Vec3d hips = (Rest("left_hip") + Rest("right_hip")) * 0.5;
@@ -299,7 +197,7 @@ class Transfer {
                             Unit(Rest("left_shoulder") - Rest("right_shoulder"), {1, 0, 0}));
     const Vec3d trunk = Unit(Rest("neck") - hips, kUp);
     const Vec3d up = Unit(trunk - left * Dot(trunk, left), kUp);
-    body_ = FromAxes(left, up, Cross(left, up));
+    facing_ = FromAxes(left, up, Cross(left, up));
   }
 
   absl::StatusOr<int> JointFor(const std::string& name) const {
@@ -308,12 +206,7 @@ class Transfer {
     return Error(absl::StrCat(name, ": expected one joint of the rig, got a place between joints"));
   }
 
-  bool IsBelow(int joint, int ancestor) const {
-    for (; joint >= 0; joint = rig_.parents[Index(joint)]) {
-      if (joint == ancestor) return true;
-    }
-    return false;
-  }
+  bool IsBelow(int joint, int ancestor) const { return IsAtOrBelow(rig_.parents, joint, ancestor); }
 
   absl::Status AddLimb(const std::string& start, const std::string& middle, const std::string& end,
                        bool leg) {
@@ -332,7 +225,6 @@ class Transfer {
     limb.clip_end = skeleton_.Find(end);
     const bool left = absl::string_view(start).substr(0, 4) == "left";
     limb.leg = leg;
-    limb.side = left ? LimbEnds::Side::kLeft : LimbEnds::Side::kRight;
     const Vec3d upper = RestAt(limb.middle) - RestAt(limb.start);
     const Vec3d lower = RestAt(limb.end) - RestAt(limb.middle);
     limb.upper_length = Norm(upper), limb.lower_length = Norm(lower);
@@ -344,6 +236,12 @@ class Transfer {
     const Vec3d hinge = RestHinge(u, l, leg, left);
     limb.upper_rest = Frame(u, hinge);
     limb.lower_rest = Frame(l, hinge);
+    if (const auto& tips = leg ? roles_.toes : roles_.hands; tips.has_value()) {
+      const int end_joint = FollowersJoint(limb.clip_end);
+      limb.tip = left ? tips->left : tips->right;
+      limb.tip_rest = ToDouble(rig_rest_[Index(limb.tip)]) - ToDouble(rig_rest_[Index(end_joint)]);
+      if (leg) limb.rig_toe = RigJointBelow(end_joint, limb.tip);
+    }
     limbs_.push_back(limb);
     return absl::OkStatus();
   }
@@ -351,19 +249,23 @@ class Transfer {
   // The axis about which a limb bends: knees about the axis to the left; elbows of a T pose about
   // the vertical, so that forearms move forwards.
   Vec3d RestHinge(Vec3d upper, Vec3d lower, bool leg, bool left) const {
-    const Vec3d side = Rotate(body_, {left ? 1.0 : -1.0, 0, 0});
-    const Vec3d vertical = Rotate(body_, {0, left ? -1.0 : 1.0, 0});
+    const Vec3d side = Rotate(facing_, {left ? 1.0 : -1.0, 0, 0});
+    const Vec3d vertical = Rotate(facing_, {0, left ? -1.0 : 1.0, 0});
     const Vec3d expected =
-        leg ? Rotate(body_, {1, 0, 0})
-            : Rotate(ShortestArc(side, upper, Rotate(body_, {0, 0, 1})), vertical);
+        leg ? Rotate(facing_, {1, 0, 0})
+            : Rotate(ShortestArc(side, upper, Rotate(facing_, {0, 0, 1})), vertical);
     const Vec3d bend = Cross(upper, lower);
     // A bend in the wrong direction is slack of the rest pose and determines no plane.
     return Norm(bend) > kBentAtRest && Dot(bend, expected) > 0 ? Unit(bend, expected) : expected;
   }
 
-  int CommonAncestor(int a, int b) const {
-    while (!IsBelow(b, a)) a = rig_.parents[Index(a)];
-    return a;
+  // The rig's joint at the follower's joint `tip`, if it is below the one at `end`; or -1.
+  int RigJointBelow(int end, int tip) const {
+    const auto& at_end = rig_.joints.sources[Index(end)].terms;
+    const auto& at_tip = rig_.joints.sources[Index(tip)].terms;
+    if (at_tip.size() != 1 || at_end.size() != 1) return -1;
+    const int joint = at_tip[0].joint, above = at_end[0].joint;
+    return joint != above && IsBelow(joint, above) ? joint : -1;
   }
 
   // The joints from below `top` to `joint`.
@@ -379,9 +281,9 @@ class Transfer {
       if (IsBelow(limb.start, 0)) continue;
       return Error("expected limbs below one root, got several");
     }
-    pelvis_ = CommonAncestor(limbs_[2].start, limbs_[3].start);
-    chest_ = CommonAncestor(limbs_[0].start, limbs_[1].start);
-    pelvis_ = CommonAncestor(pelvis_, chest_);
+    pelvis_ = CommonAncestor(rig_.parents, limbs_[2].start, limbs_[3].start);
+    chest_ = CommonAncestor(rig_.parents, limbs_[0].start, limbs_[1].start);
+    pelvis_ = CommonAncestor(rig_.parents, pelvis_, chest_);
     spine_ = Chain(pelvis_, chest_);
     const JointSource& head = joints_.sources[Index(skeleton_.Find("head"))];
     // The middle of the head is between its joint and its end.
@@ -394,21 +296,26 @@ class Transfer {
     return absl::OkStatus();
   }
 
-  double LegRatio(const motion::Clip& clip) const {
+  double LegRatio() const {
     std::vector<double> lengths;
     const Limb& leg = limbs_[2];
-    for (int frame = 0; frame < clip.frame_count(); ++frame) {
-      const Vec3d knee = ToDouble(clip.at(frame, leg.clip_middle));
-      lengths.push_back(Norm(ToDouble(clip.at(frame, leg.clip_start)) - knee) +
-                        Norm(ToDouble(clip.at(frame, leg.clip_end)) - knee));
+    for (int frame = 0; frame < body_.frame_count(); ++frame) {
+      const Vec3d knee = ToDouble(body_.at(frame, leg.clip_middle));
+      lengths.push_back(Norm(ToDouble(body_.at(frame, leg.clip_start)) - knee) +
+                        Norm(ToDouble(body_.at(frame, leg.clip_end)) - knee));
     }
     const double length = base::Median(std::move(lengths));
     return length > kNoLength ? (leg.upper_length + leg.lower_length) / length : 1;
   }
 
-  Vec3d At(const motion::Clip& clip, int frame, absl::string_view joint) const {
-    return ToDouble(clip.at(frame, skeleton_.Find(std::string(joint))));
+  Vec3d At(int frame, const std::string& joint) const {
+    return ToDouble(body_.at(frame, skeleton_.Find(joint)));
   }
+  // Half way between the joints of both sides.
+  Vec3d Middle(int frame, const std::string& joint) const {
+    return (At(frame, "left_" + joint) + At(frame, "right_" + joint)) * 0.5;
+  }
+  Vec3d TipAt(int frame, const Limb& limb) const { return ToDouble(follower_.at(frame, limb.tip)); }
 
   // The rotation that takes a lateral direction and one up the trunk from rest to the clip.
   static Quaternion FitTurn(Vec3d rest_side, Vec3d rest_up, Vec3d side, Vec3d up,
@@ -418,17 +325,17 @@ class Transfer {
                        {{previous, kPreviousPrior}});
   }
 
-  CharacterPose Pose(const motion::Clip& clip, int frame) {
+  CharacterPose Pose(int frame) {
     CharacterPose pose;
     pose.turns.resize(rig_.names.size());
     pose.positions.resize(rig_.names.size());
     std::fill(driven_.begin(), driven_.end(), false);
-    TurnTrunk(clip, frame, &pose);
-    PlacePelvis(clip, frame, &pose);
-    LeanSpine(clip, frame, &pose);
-    TurnHead(clip, frame, &pose);
+    TurnTrunk(frame, &pose);
+    PlacePelvis(frame, &pose);
+    LeanSpine(frame, &pose);
+    TurnHead(frame, &pose);
     Stand(&pose);
-    for (Limb& limb : limbs_) TurnLimb(clip, frame, &limb, &pose);
+    for (Limb& limb : limbs_) TurnLimb(frame, &limb, &pose);
     Stand(&pose);
     return pose;
   }
@@ -438,22 +345,22 @@ class Transfer {
     driven_[Index(joint)] = true;
   }
 
-  void TurnTrunk(const motion::Clip& clip, int frame, CharacterPose* pose) {
-    const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
+  void TurnTrunk(int frame, CharacterPose* pose) {
+    const Vec3d hips = Middle(frame, "hip");
     const Vec3d rest_hips = (Rest("left_hip") + Rest("right_hip")) * 0.5;
     // The rig's torso joint may coincide with the hips; the shoulders never do.
     const Vec3d rest_torso = Rest("torso") - rest_hips;
     const bool low = Norm(rest_torso) < kNoLength * 5;
     const char* upper = low ? "neck" : "torso";
     pelvis_turn_ = FitTurn(Rest("left_hip") - Rest("right_hip"), Rest(upper) - rest_hips,
-                           At(clip, frame, "left_hip") - At(clip, frame, "right_hip"),
-                           At(clip, frame, upper) - hips, pelvis_turn_);
+                           At(frame, "left_hip") - At(frame, "right_hip"), At(frame, upper) - hips,
+                           pelvis_turn_);
     const char* below = low ? "left_hip" : "torso";
     const Vec3d rest_from = low ? rest_hips : Rest(below);
-    const Vec3d from = low ? hips : At(clip, frame, below);
+    const Vec3d from = low ? hips : At(frame, below);
     chest_turn_ = FitTurn(Rest("left_shoulder") - Rest("right_shoulder"), Rest("neck") - rest_from,
-                          At(clip, frame, "left_shoulder") - At(clip, frame, "right_shoulder"),
-                          At(clip, frame, "neck") - from, chest_turn_);
+                          At(frame, "left_shoulder") - At(frame, "right_shoulder"),
+                          At(frame, "neck") - from, chest_turn_);
     // A root at the pelvis rotates with it; a root on the floor does not.
     for (int joint = rig_.parents[Index(pelvis_)]; joint >= 0; joint = rig_.parents[Index(joint)]) {
       const bool near = Norm(RestAt(joint) - RestAt(pelvis_)) < kAtThePelvis;
@@ -467,14 +374,14 @@ class Transfer {
   }
 
   // Scales the height of the hips to the rig's legs, at most as high as both legs reach.
-  void PlacePelvis(const motion::Clip& clip, int frame, CharacterPose* pose) {
-    const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
+  void PlacePelvis(int frame, CharacterPose* pose) {
+    const Vec3d hips = Middle(frame, "hip");
     Vec3d target = hips;
     target.y = ankle_height_ + (hips.y - ankle_height_) * leg_ratio_;
     const Vec3d rest_hips = (RestAt(limbs_[2].start) + RestAt(limbs_[3].start)) * 0.5;
     for (const Limb& limb : limbs_) {
       if (!limb.leg) continue;
-      const Vec3d ankle = ToDouble(clip.at(frame, limb.clip_end));
+      const Vec3d ankle = ToDouble(body_.at(frame, limb.clip_end));
       const Vec3d hip = target + Rotate(pelvis_turn_, RestAt(limb.start) - rest_hips);
       const double reach = 0.9999 * (limb.upper_length + limb.lower_length);
       const double across = std::hypot(ankle.x - hip.x, ankle.z - hip.z);
@@ -486,12 +393,9 @@ class Transfer {
   }
 
   // Leans the trunk so that the shoulders are in the clip's direction from the hips.
-  void LeanSpine(const motion::Clip& clip, int frame, CharacterPose* pose) {
+  void LeanSpine(int frame, CharacterPose* pose) {
     if (spine_.empty()) return;
-    const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
-    const Vec3d shoulders =
-        (At(clip, frame, "left_shoulder") + At(clip, frame, "right_shoulder")) * 0.5;
-    const Vec3d target = Unit(shoulders - hips, kUp);
+    const Vec3d target = Unit(Middle(frame, "shoulder") - Middle(frame, "hip"), kUp);
     const auto stands = [&](int joint) { return pose->positions[Index(joint)]; };
     const Vec3d from = (stands(limbs_[2].start) + stands(limbs_[3].start)) * 0.5;
     const Vec3d to = (stands(limbs_[0].start) + stands(limbs_[1].start)) * 0.5;
@@ -500,11 +404,11 @@ class Transfer {
     Stand(pose);
   }
 
-  void TurnHead(const motion::Clip& clip, int frame, CharacterPose* pose) {
+  void TurnHead(int frame, CharacterPose* pose) {
     if (neck_.empty()) return;
     const Quaternion chest = pose->turns[Index(chest_)];
     const Vec3d at_rest = Unit(Rotate(chest, Rest("head") - Rest("neck")), kUp);
-    const Vec3d target = Unit(At(clip, frame, "head") - At(clip, frame, "neck"), at_rest);
+    const Vec3d target = Unit(At(frame, "head") - At(frame, "neck"), at_rest);
     const Quaternion whole = ShortestArc(at_rest, target, {1, 0, 0}) * chest;
     for (std::size_t i = 0; i < neck_.size(); ++i) {
       const double share = static_cast<double>(i + 1) / static_cast<double>(neck_.size());
@@ -512,25 +416,51 @@ class Transfer {
     }
   }
 
-  void TurnLimb(const motion::Clip& clip, int frame, Limb* limb, CharacterPose* pose) {
+  void TurnLimb(int frame, Limb* limb, CharacterPose* pose) {
     const Vec3d start = pose->positions[Index(limb->start)];
-    const Vec3d target = ToDouble(clip.at(frame, limb->clip_end));
+    const Vec3d target = ToDouble(body_.at(frame, limb->clip_end));
     // Knees point forwards, elbows backwards.
     const Quaternion trunk = pose->turns[Index(limb->leg ? pelvis_ : chest_)];
-    const Vec3d otherwise = Rotate(trunk * body_, {0, 0, limb->leg ? 1.0 : -1.0});
+    const Vec3d otherwise = Rotate(trunk * facing_, {0, 0, limb->leg ? 1.0 : -1.0});
     const Vec3d pole =
-        limb->pole.Follow(ToDouble(clip.at(frame, limb->clip_start)),
-                          ToDouble(clip.at(frame, limb->clip_middle)), target, otherwise);
+        limb->pole.Follow(ToDouble(body_.at(frame, limb->clip_start)),
+                          ToDouble(body_.at(frame, limb->clip_middle)), target, otherwise);
     const LimbPose reach = ReachFor(start, target, limb->upper_length, limb->lower_length, pole);
     const Quaternion lower = Frame(reach.lower, reach.hinge);
     Turn(limb->start, Frame(reach.upper, reach.hinge) * Inverse(limb->upper_rest), pose);
     Turn(limb->middle, lower * Inverse(limb->lower_rest), pose);
     if (!limb->leg) {
-      const Quaternion forearm = pose->turns[Index(limb->middle)];
-      return Turn(limb->end, ends_.Hand(limb->side, frame, forearm), pose);
+      return Turn(limb->end, HandTurn(frame, *limb, pose->turns[Index(limb->middle)]), pose);
     }
     const Vec3d ankle = start + reach.upper * limb->upper_length + reach.lower * limb->lower_length;
     TurnFoot(frame, *limb, lower, ankle, pose);
+  }
+
+  // The hand's rotation from its rest pose, on a forearm rotated by `forearm`, which it continues
+  // without knuckles.
+  Quaternion HandTurn(int frame, const Limb& arm, Quaternion forearm) const {
+    if (arm.tip < 0 || Norm(arm.tip_rest) < kNoLength) return forearm;
+    const Vec3d straight = Unit(Rotate(forearm, arm.tip_rest), {0, 1, 0});
+    const Vec3d hand = TipAt(frame, arm) - ToDouble(body_.at(frame, arm.clip_end));
+    if (Norm(hand) < kNoLength) return forearm;
+    const Vec3d direction = Unit(hand, straight);
+    const Vec3d axis =
+        Unit(Cross(straight, Rotate(forearm, {0, 0, 1})), Rotate(forearm, {1, 0, 0}));
+    return ShortestArc(straight, direction, axis) * forearm;
+  }
+
+  // The rotation of the rig's foot at rest. `expected` is that of a foot that points ahead; `flat`:
+  // the leg stands at rest, so a foot of a usual slope is level on the floor.
+  Quaternion FootAtRest(const Limb& leg, Quaternion expected, bool flat) const {
+    if (leg.rig_toe < 0 || Norm(leg.tip_rest) < kNoLength) return expected;
+    const Vec3d foot = Rotate(Inverse(expected), leg.tip_rest);
+    const double slope = std::atan2(-foot.y, std::hypot(foot.x, foot.z));
+    const double outwards = std::atan2(foot.x, foot.z);
+    if (flat && slope > kLeastSlope && slope < kMostSlope && std::abs(outwards) < kMostToeOut) {
+      return expected * AxisAngle({0, 1, 0}, outwards);
+    }
+    // A foot that hangs or points elsewhere takes its slope from the follower's.
+    return FootRotationWithToe(expected, {}, leg.tip_rest, foot_slope_);
   }
 
   // Requires the leg's other turns. `lower`: Frame(shin, hinge).
@@ -538,14 +468,18 @@ class Transfer {
     // In the canonical pose the shin hangs and bends about the axis to the left.
     const Quaternion hangs = Frame({0, -1, 0}, {1, 0, 0});
     const Vec3d rest_down = Rotate(leg.lower_rest, {1, 0, 0});
-    const bool flat_at_rest = Dot(rest_down, Rotate(body_, {0, -1, 0})) > kShinHangs;
-    const Quaternion rest = ends_.FootAtRest(
-        leg.side, flat_at_rest ? body_ : leg.lower_rest * Inverse(hangs), flat_at_rest);
-    const Quaternion foot =
-        ends_.Foot(leg.side, frame, FootRotation(lower * Inverse(hangs), ankle, ankle_height_));
+    const bool flat = Dot(rest_down, Rotate(facing_, {0, -1, 0})) > kShinHangs;
+    const Quaternion rest = FootAtRest(leg, flat ? facing_ : leg.lower_rest * Inverse(hangs), flat);
+    Quaternion foot = FootRotation(lower * Inverse(hangs), ankle, ankle_height_);
+    if (leg.tip >= 0) {
+      foot = FootRotationWithToe(foot, ToDouble(body_.at(frame, leg.clip_end)), TipAt(frame, leg),
+                                 foot_slope_);
+    }
     Turn(leg.end, foot * Inverse(rest), pose);
-    const int toe = ends_.ToeJoint(leg.side);
-    if (toe >= 0) Turn(toe, ends_.Toes(leg.side, frame, foot) * Inverse(rest), pose);
+    if (leg.rig_toe < 0) return;
+    // Toes are level on the floor while the heel is up.
+    const Quaternion toes = FootRotation(foot, TipAt(frame, leg), toe_height_);
+    Turn(leg.rig_toe, toes * Inverse(rest), pose);
   }
 
   // Joints without a target rotation follow their parents. Positions follow from the rotations.
@@ -575,18 +509,22 @@ class Transfer {
     }
   }
 
+  const motion::Clip& follower_;
+  const BodyRoles roles_;  // of the follower
   const CharacterRig& rig_;
-  const JointMap joints_;  // the body's joints from the rig's
-  const LimbEnds& ends_;
+  const JointMap joints_;            // the body's joints from the rig's
   const motion::Skeleton skeleton_;  // of the body
   const std::string source_;
-  std::vector<Vec3d> landmarks_;  // the body's joints on the rig at rest
-  Quaternion body_;               // from x left, y up, z ahead to the rest pose
-  std::vector<Limb> limbs_;       // arms, then legs, the left one first
+  const std::vector<motion::Vec3> rig_rest_;  // the follower's joints on the rig at rest
+  motion::Clip body_;                         // the follower's motion, of the body's joints
+  std::vector<Vec3d> landmarks_;              // the body's joints on the rig at rest
+  Quaternion facing_;                         // from x left, y up, z ahead to the rest pose
+  std::vector<Limb> limbs_;                   // arms, then legs, the left one first
   int pelvis_ = 0, chest_ = 0;
   std::vector<int> spine_, neck_;  // below the pelvis to the chest; below the chest to the head
   std::vector<bool> driven_;
   double ankle_height_ = 0, leg_ratio_ = 1;
+  double foot_slope_ = 0, toe_height_ = 0;  // of standing feet: radians, metres
   Quaternion pelvis_turn_, chest_turn_;
   Vec3d pelvis_at_;
 };
@@ -604,13 +542,12 @@ absl::StatusOr<std::vector<CharacterPose>> TransferToRig(const motion::Clip& cli
                                                    " joints that the rig is read for, got ",
                                                    clip.joint_count()));
   }
-  const absl::StatusOr<BodyRoles> roles = FindBodyRoles("follower", clip);
+  absl::StatusOr<BodyRoles> roles = FindBodyRoles("follower", clip);
   if (!roles.ok()) return roles.status();
-  const LimbEnds ends(clip, *roles, rig, ApplyJointMap(rig.joints, ToFloats(rig.positions)));
-  Transfer transfer(rig, Compose(rig.joints, roles->body), ends, source);
+  Transfer transfer(clip, *std::move(roles), rig, source);
   status = transfer.Prepare();
   if (!status.ok()) return status;
-  return transfer.Run(BodyOf(clip, roles->body));
+  return transfer.Run();
 }
 
 }  // namespace duet::retargeting
