@@ -1,6 +1,7 @@
 #include "model/formats/motion_file.h"
 
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -32,7 +33,22 @@ namespace fs = std::filesystem;
 using retargeting::Origin;
 using retargeting::Setting;
 
+// In the order of Format.
+struct FormatNames {
+  const char* name;
+  const char* title;
+};
+constexpr FormatNames kFormats[] = {{"sbu", "SBU text"}, {"bvh", "BVH"}, {"gltf", "glTF"},
+                                    {"glb", "glTF"},     {"csv", "CSV"}, {"json", "JSON"},
+                                    {"npy", "NPY"}};
+
+const char* FormatTitle(Format format) { return kFormats[static_cast<std::size_t>(format)].title; }
+
 bool IsGltf(Format format) { return format == Format::kGltf || format == Format::kGlb; }
+
+gltf::GltfContainer ContainerOf(Format format) {
+  return format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText;
+}
 
 // The index of the person in the file.
 int PersonOf(const ReadOptions& options) { return options.side == Side::kLeft ? 0 : 1; }
@@ -77,20 +93,15 @@ gltf::GltfFileReader FilesBeside(const fs::path& document) {
   return [document](const std::string& name) { return ReadFileBeside(document, name); };
 }
 
-void Remark(std::string what, const ReadOptions& options) {
-  if (options.report != nullptr) options.report->remarks.push_back(std::move(what));
-}
-
 // A file of positions may not state its up axis, which is z for Blender.
 void WarnOfUpAxis(const motion::Clip& clip, const ReadOptions& options) {
   if (!options.skeleton.feet) return;
   const std::optional<motion::UpAxis> up = motion::InferUpAxis(options.skeleton, {&clip.poses});
   if (up == motion::UpAxis::kYUp) return;
-  Remark(absl::StrCat(
-             "warning: up axis: as the file was read, the feet are not below the root along y; ",
-             up.has_value() ? absl::StrCat(motion::UpAxisName(*up), " would fit; ") : "",
-             "specify the up axis"),
-         options);
+  options.report->remarks.push_back(absl::StrCat(
+      "warning: up axis: as the file was read, the feet are not below the root along y; ",
+      up.has_value() ? absl::StrCat(motion::UpAxisName(*up), " would fit; ") : "",
+      "specify the up axis"));
 }
 
 // Names the reader of other arrays where one does not hold positions of the skeleton's joints.
@@ -102,20 +113,19 @@ absl::Status WithResearchHint(const absl::Status& status) {
                    "; read an array of research (HumanML3D, InterGen) with duet_motion.research"));
 }
 
-void ReportCoordinates(const motion::Coordinates& coordinates, Origin unit, Origin up_axis,
-                       retargeting::ReadingReport* report) {
-  report->unit = Setting{std::string(LengthUnitName(coordinates.unit)), unit, ""};
-  report->up_axis = Setting{std::string(UpAxisName(coordinates.up_axis)), up_axis, ""};
-}
-
-// Unless the caller names the unit.
-void ReportMetresPerUnit(const ReadOptions& options) {
-  if (!options.metres_per_unit.has_value()) return;
-  if (options.coordinates.has_value() &&
-      motion::StatedMetresPerUnit(std::nullopt, options.coordinates->unit) ==
-          options.metres_per_unit) {
-    return;
-  }
+// Reports the coordinates of `file`, whose origins are `unit` and `up_axis`, unless the caller
+// states others.
+void ReportCoordinates(const motion::Coordinates& file, Origin unit, Origin up_axis,
+                       const ReadOptions& options) {
+  const bool given = options.coordinates.has_value();
+  const motion::Coordinates read = options.coordinates.value_or(file);
+  options.report->unit =
+      Setting{std::string(LengthUnitName(read.unit)), given ? Origin::kGiven : unit, ""};
+  options.report->up_axis =
+      Setting{std::string(UpAxisName(read.up_axis)), given ? Origin::kGiven : up_axis, ""};
+  const bool named =
+      given && motion::StatedMetresPerUnit(std::nullopt, read.unit) == options.metres_per_unit;
+  if (!options.metres_per_unit.has_value() || named) return;
   options.report->unit = Setting{absl::StrCat(*options.metres_per_unit, " m"), Origin::kGiven, ""};
 }
 
@@ -135,32 +145,23 @@ float ScaleOf(const ReadOptions& options) {
 void Report(const motion::RecordedMotion& motion, const motion::Clip& person,
             const ReadOptions& options) {
   retargeting::ReadingReport* report = options.report;
-  if (report == nullptr) return;
   report->people = static_cast<int>(motion.people.size());
   report->file_joints = person.joint_names;
   if (person.frame_rate_hz > 0) {
     report->frame_rate = Setting{absl::StrCat(person.frame_rate_hz, " Hz"), Origin::kFile, ""};
   }
-  if (options.coordinates.has_value()) {
-    ReportCoordinates(*options.coordinates, Origin::kGiven, Origin::kGiven, report);
-  } else {
-    ReportCoordinates(motion.coordinates, motion.says_unit ? Origin::kFile : Origin::kDefault,
-                      motion.says_up_axis ? Origin::kFile : Origin::kDefault, report);
-  }
-  ReportMetresPerUnit(options);
+  ReportCoordinates(motion.coordinates, motion.says_unit ? Origin::kFile : Origin::kDefault,
+                    motion.says_up_axis ? Origin::kFile : Origin::kDefault, options);
 }
 
 // SBU text has the skeleton's joints in its order.
 void ReportSbu(const flat::SbuOptions& sbu, const ReadOptions& options) {
   retargeting::ReadingReport* report = options.report;
-  if (report == nullptr) return;
   report->people = 2;
   report->file_joints = sbu.joint_names;
   report->frame_rate = Setting{absl::StrCat(sbu.frame_rate_hz, " Hz"), Origin::kDefault,
                                "as SBU's captures have; K3HI's have 30"};
-  const Origin origin = options.coordinates.has_value() ? Origin::kGiven : Origin::kDefault;
-  ReportCoordinates(sbu.coordinates, origin, origin, report);
-  ReportMetresPerUnit(options);
+  ReportCoordinates(sbu.coordinates, Origin::kDefault, Origin::kDefault, options);
   for (const std::string& joint : sbu.joint_names) {
     report->joints.push_back({joint, {{joint, 1}}, Origin::kDefault, ""});
   }
@@ -172,9 +173,9 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   const bool second = options.side == Side::kRight && motion.people.size() > 1;
   const motion::Clip& person = motion.people[second ? 1 : 0];
   Report(motion, person, options);
-  absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
-      source, person.joint_names, person.poses, options.skeleton, options.joint_overrides,
-      options.report == nullptr ? nullptr : &options.report->joints);
+  absl::StatusOr<retargeting::JointMap> map =
+      retargeting::MapJoints(source, person.joint_names, person.poses, options.skeleton,
+                             options.joint_overrides, &options.report->joints);
   if (!map.ok()) return map.status();
   const motion::Coordinates coordinates = CoordinatesOf(options, motion.coordinates);
   motion::Clip clip;
@@ -237,29 +238,10 @@ absl::StatusOr<motion::Clip> ReadNpyPerson(const std::string& content, const std
   return ToSkeleton(*motion, source, options);
 }
 
-const char* FormatTitle(Format format) {
-  switch (format) {
-    case Format::kSbuText:
-      return "SBU text";
-    case Format::kBvh:
-      return "BVH";
-    case Format::kGltf:
-    case Format::kGlb:
-      return "glTF";
-    case Format::kCsv:
-      return "CSV";
-    case Format::kJson:
-      return "JSON";
-    case Format::kNpy:
-      return "NPY";
-  }
-  return "";
-}
-
 absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
                                         const fs::path& path, const ReadOptions& options) {
   const std::string source = path.string();
-  if (options.report != nullptr) options.report->format = FormatTitle(format);
+  options.report->format = FormatTitle(format);
   if (options.animation.has_value() && !IsGltf(format)) {
     return absl::InvalidArgumentError(absl::StrCat(source, ": animation: expected none, because ",
                                                    FormatTitle(format), " holds one motion, got ",
@@ -276,29 +258,6 @@ absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& conten
   return ToSkeleton(*motion, source, options);
 }
 
-// The person at the specified rate, or at the file's.
-absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& content,
-                                        const fs::path& path, const ReadOptions& options) {
-  absl::StatusOr<motion::Clip> clip = ReadPerson(format, content, path, options);
-  if (!clip.ok()) return clip.status();
-  if (options.frame_rate_hz.has_value()) {
-    clip->frame_rate_hz = *options.frame_rate_hz;
-    if (options.report != nullptr) {
-      options.report->frame_rate =
-          Setting{absl::StrCat(clip->frame_rate_hz, " Hz"), Origin::kGiven, ""};
-    }
-  }
-  if (clip->frame_rate_hz > 0) {
-    // A position within the limit in the file's unit may exceed it in metres.
-    const absl::Status valid = CheckClip(path.string(), *clip);
-    if (!valid.ok()) return valid;
-    return clip;
-  }
-  return MendedBy(absl::InvalidArgumentError(absl::StrCat(
-                      path.string(), ": frame rate: expected one, got none in the file")),
-                  motion::ReadingSetting::kFrameRate);
-}
-
 absl::Status CheckOptions(const ReadOptions& options) {
   if (options.metres_per_unit.has_value()) {
     absl::Status status = retargeting::CheckMetresPerUnit(*options.metres_per_unit);
@@ -306,53 +265,6 @@ absl::Status CheckOptions(const ReadOptions& options) {
   }
   if (!options.frame_rate_hz.has_value()) return absl::OkStatus();
   return motion::CheckFrameRate("frame rate given", *options.frame_rate_hz);
-}
-
-absl::StatusOr<std::string> FormatBvhPerson(const motion::Clip& clip,
-                                            const motion::Skeleton& skeleton,
-                                            const WriteOptions& options) {
-  absl::StatusOr<bvh::BvhDocument> document =
-      bvh::ToBvh(clip, skeleton, options.bvh_metres_per_unit);
-  if (!document.ok()) return document.status();
-  return FormatBvh(*document);
-}
-
-// People that CheckPeople accepts.
-absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motion::Clip>& people,
-                                          const motion::Skeleton& skeleton,
-                                          const WriteOptions& options) {
-  if (IsGltf(format)) {
-    return gltf::FormatGltf(
-        people, skeleton, options.provenance,
-        format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
-  }
-  if (format == Format::kBvh) return FormatBvhPerson(people[0], skeleton, options);
-  if (format == Format::kCsv) return flat::FormatCsv(people);
-  if (format == Format::kNpy) return flat::FormatNpy(people);
-  if (format == Format::kJson) {
-    return flat::FormatJsonMotion(people, skeleton,
-                                  people.size() > 1 ? options.follower_rotations : nullptr);
-  }
-  flat::SbuOptions sbu;
-  sbu.joint_names = skeleton.joint_names;
-  return flat::FormatSbu({people[0], people[1]}, sbu);
-}
-
-absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
-                                                   const std::vector<motion::Clip>& people,
-                                                   const motion::Skeleton& skeleton,
-                                                   const WriteOptions& options) {
-  std::vector<fs::path> files;
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton, options);
-    if (!text.ok()) return text.status();
-    fs::path file = path;
-    file.replace_extension(i == 0 ? ".leader.bvh" : ".follower.bvh");
-    absl::Status status = base::WriteFile(file, *text);
-    if (!status.ok()) return status;
-    files.push_back(std::move(file));
-  }
-  return files;
 }
 
 }  // namespace
@@ -365,12 +277,10 @@ std::optional<Format> FormatOf(const fs::path& path) {
 }
 
 std::optional<Format> ParseFormat(absl::string_view name) {
-  static const auto& formats = *new std::map<absl::string_view, Format>{
-      {"sbu", Format::kSbuText}, {"bvh", Format::kBvh}, {"gltf", Format::kGltf},
-      {"glb", Format::kGlb},     {"csv", Format::kCsv}, {"json", Format::kJson},
-      {"npy", Format::kNpy}};
-  const auto found = formats.find(name);
-  return found == formats.end() ? std::nullopt : std::optional<Format>(found->second);
+  for (std::size_t i = 0; i < std::size(kFormats); ++i) {
+    if (name == kFormats[i].name) return static_cast<Format>(i);
+  }
+  return std::nullopt;
 }
 
 bool IsReadable(const fs::path& path) { return FormatOf(path).has_value(); }
@@ -396,8 +306,6 @@ absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions&
   if (!options.format.has_value() && !IsReadable(path)) {
     return UnknownExtension(path, kReadableExtensions);
   }
-  absl::Status status = CheckOptions(options);
-  if (!status.ok()) return status;
   const absl::StatusOr<std::string> content =
       base::ReadFile(path, motion::kMaxMotionFileBytes, "a motion");
   if (!content.ok()) return content.status();
@@ -405,12 +313,30 @@ absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions&
 }
 
 absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const fs::path& path,
-                                         const ReadOptions& options) {
+                                         const ReadOptions& given) {
+  retargeting::ReadingReport unread;
+  ReadOptions options = given;
+  if (options.report == nullptr) options.report = &unread;
   const std::optional<Format> format = options.format.has_value() ? options.format : FormatOf(path);
   if (!format.has_value()) return UnknownExtension(path, kReadableExtensions);
   absl::Status status = CheckOptions(options);
   if (!status.ok()) return status;
-  return ReadAtRate(*format, content, path, options);
+  absl::StatusOr<motion::Clip> clip = ReadPerson(*format, content, path, options);
+  if (!clip.ok()) return clip.status();
+  if (options.frame_rate_hz.has_value()) {
+    clip->frame_rate_hz = *options.frame_rate_hz;
+    options.report->frame_rate =
+        Setting{absl::StrCat(clip->frame_rate_hz, " Hz"), Origin::kGiven, ""};
+  }
+  if (!(clip->frame_rate_hz > 0)) {
+    return MendedBy(absl::InvalidArgumentError(absl::StrCat(
+                        path.string(), ": frame rate: expected one, got none in the file")),
+                    motion::ReadingSetting::kFrameRate);
+  }
+  // A position within the limit in the file's unit may exceed it in metres.
+  status = CheckClip(path.string(), *clip);
+  if (!status.ok()) return status;
+  return clip;
 }
 
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path,
@@ -437,29 +363,55 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
                                          const WriteOptions& options) {
   absl::Status status = CheckPeople(people, skeleton);
   if (!status.ok()) return status;
-  if (format == Format::kBvh && people.size() > 1) {
-    return absl::InvalidArgumentError("people: expected 1, got 2; BVH has a file for each person");
+  switch (format) {
+    case Format::kGltf:
+    case Format::kGlb:
+      return gltf::FormatGltf(people, skeleton, options.provenance, ContainerOf(format));
+    case Format::kCsv:
+      return flat::FormatCsv(people);
+    case Format::kNpy:
+      return flat::FormatNpy(people);
+    case Format::kJson:
+      return flat::FormatJsonMotion(people, skeleton,
+                                    people.size() > 1 ? options.follower_rotations : nullptr);
+    case Format::kBvh:
+      if (people.size() == 1) {
+        return FormatBvh(bvh::ToBvh(people[0], skeleton, options.bvh_metres_per_unit));
+      }
+      return absl::InvalidArgumentError(
+          "people: expected 1, got 2; BVH has a file for each person");
+    case Format::kSbuText:
+      break;
   }
-  if (format == Format::kSbuText && people.size() != 2) {
+  if (people.size() != 2) {
     return absl::InvalidArgumentError("people: expected 2, got 1; SBU text always has two");
   }
-  return FormatChecked(format, people, skeleton, options);
+  flat::SbuOptions sbu;
+  sbu.joint_names = skeleton.joint_names;
+  return flat::FormatSbu({people[0], people[1]}, sbu);
 }
 
 absl::StatusOr<std::vector<fs::path>> WritePeople(const fs::path& path, Format format,
                                                   const std::vector<motion::Clip>& people,
                                                   const motion::Skeleton& skeleton,
                                                   const WriteOptions& options) {
+  std::vector<fs::path> files = {path};
+  std::vector<std::vector<motion::Clip>> contents = {people};
   if (format == Format::kBvh && people.size() == 2) {
     absl::Status status = CheckPeople(people, skeleton);
     if (!status.ok()) return status;
-    return WriteBvhPair(path, people, skeleton, options);
+    files = {fs::path(path).replace_extension(".leader.bvh"),
+             fs::path(path).replace_extension(".follower.bvh")};
+    contents = {{people[0]}, {people[1]}};
   }
-  const absl::StatusOr<std::string> content = FormatPeople(format, people, skeleton, options);
-  if (!content.ok()) return content.status();
-  absl::Status status = base::WriteFile(path, *content);
-  if (!status.ok()) return status;
-  return std::vector<fs::path>{path};
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const absl::StatusOr<std::string> content =
+        FormatPeople(format, contents[i], skeleton, options);
+    if (!content.ok()) return content.status();
+    absl::Status status = base::WriteFile(files[i], *content);
+    if (!status.ok()) return status;
+  }
+  return files;
 }
 
 absl::Status CheckReadable(const std::filesystem::path& path, const std::optional<Format>& format) {
@@ -484,35 +436,6 @@ absl::Status CheckFolderOf(const std::filesystem::path& path) {
       absl::StrCat(path.string(), ": there is no folder ", folder.string()));
 }
 
-namespace {
-
-// The feet of a rig may lack toes.
-retargeting::CharacterOptions RigOptionsOf(const FollowerRig& rig) {
-  retargeting::CharacterOptions options = CharacterOptionsOf(rig.reading);
-  options.missing_toes = retargeting::MissingToes::kAtTheFeet;
-  return options;
-}
-
-bvh::BvhImportOptions BvhOptionsOf(const FollowerRig& rig) {
-  return {RigOptionsOf(rig), PersonOf(rig.reading)};
-}
-
-gltf::GltfImportOptions GltfOptionsOf(const FollowerRig& rig) {
-  return {RigOptionsOf(rig), PersonOf(rig.reading), std::nullopt};
-}
-
-absl::StatusOr<std::string> OntoBvh(const motion::Clip& follower, const std::string& text,
-                                    const FollowerRig& rig) {
-  const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, rig.file.string());
-  if (!document.ok()) return document.status();
-  const absl::StatusOr<bvh::BvhDocument> written =
-      OntoBvhRig(follower, *document, rig.file.string(), BvhOptionsOf(rig));
-  if (!written.ok()) return written.status();
-  return FormatBvh(*written);
-}
-
-}  // namespace
-
 bool HasRig(Format format) { return format == Format::kBvh || IsGltf(format); }
 
 bool FitsRig(Format written, Format rig) {
@@ -532,10 +455,20 @@ absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const Fo
   const absl::StatusOr<std::string> content =
       base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
   if (!content.ok()) return content.status();
-  if (format == Format::kBvh) return OntoBvh(follower, *content, rig);
-  return gltf::OntoGltfRig(
-      follower, *content, source, FilesBeside(rig.file), GltfOptionsOf(rig),
-      format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
+  retargeting::CharacterOptions options = CharacterOptionsOf(rig.reading);
+  // The feet of a rig may lack toes.
+  options.missing_toes = retargeting::MissingToes::kAtTheFeet;
+  const int person = PersonOf(rig.reading);
+  if (IsGltf(format)) {
+    return gltf::OntoGltfRig(follower, *content, source, FilesBeside(rig.file),
+                             {options, person, std::nullopt}, ContainerOf(format));
+  }
+  const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(*content, source);
+  if (!document.ok()) return document.status();
+  const absl::StatusOr<bvh::BvhDocument> written =
+      OntoBvhRig(follower, *document, source, {options, person});
+  if (!written.ok()) return written.status();
+  return FormatBvh(*written);
 }
 
 }  // namespace duet::formats

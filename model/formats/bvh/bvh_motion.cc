@@ -11,7 +11,6 @@
 #include "model/base/index.h"
 #include "model/base/text.h"
 #include "model/motion/coordinates.h"
-#include "model/motion/recorded_motion.h"
 #include "model/retargeting/character.h"
 #include "model/retargeting/rig_fitting.h"
 #include "model/retargeting/rotation.h"
@@ -146,118 +145,93 @@ absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_v
 
 namespace {
 
-absl::Status CheckJoints(const motion::Clip& clip, const motion::Skeleton& skeleton) {
-  if (clip.joint_names == skeleton.joint_names) return CheckClip("clip", clip);
-  return absl::InvalidArgumentError(absl::StrCat("clip: joints: expected the skeleton's ",
-                                                 skeleton.joint_count(), " in its order, got ",
-                                                 clip.joint_count()));
-}
-
-BvhDocument MakeHierarchy(const retargeting::Rig& rig, double units_per_metre,
-                          std::vector<int>* document_joints) {
+// End Sites follow their joints.
+BvhDocument MakeHierarchy(const retargeting::Rig& rig, double units_per_metre) {
   const std::vector<BvhChannel> turns = {BvhChannel::kZRotation, BvhChannel::kXRotation,
                                          BvhChannel::kYRotation};
   BvhDocument document;
+  std::vector<int> places;  // [rig joints], in the document
   for (const retargeting::RigJoint& joint : rig.joints) {
     BvhJoint written;
     written.name = joint.name;
     if (joint.parent < 0) {
       written.channels = {BvhChannel::kXPosition, BvhChannel::kYPosition, BvhChannel::kZPosition};
     } else {
-      written.parent = (*document_joints)[static_cast<size_t>(joint.parent)];
+      written.parent = places[Index(joint.parent)];
     }
     written.offset = joint.offset * units_per_metre;
     written.channels.insert(written.channels.end(), turns.begin(), turns.end());
-    document_joints->push_back(static_cast<int>(document.joints.size()));
+    places.push_back(static_cast<int>(document.joints.size()));
     document.joints.push_back(std::move(written));
     if (joint.kind != retargeting::RigJoint::Kind::kLeaf) continue;
-    BvhJoint end;
-    end.name = joint.name + ".end";
-    end.parent = document_joints->back();
-    end.offset = joint.end_offset * units_per_metre;
-    end.end_site = true;
-    document.joints.push_back(std::move(end));
+    document.joints.push_back({joint.name + ".end",
+                               places.back(),
+                               joint.end_offset * units_per_metre,
+                               {},
+                               /*end_site=*/true});
   }
   return document;
 }
 
-std::vector<BvhTrack> TracksOf(const retargeting::Rig& rig, const motion::Clip& clip,
-                               const std::vector<int>& document_joints, std::size_t joint_count,
-                               double units_per_metre) {
-  std::vector<BvhTrack> tracks(joint_count);
+}  // namespace
+
+BvhDocument ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
+                  double metres_per_unit) {
+  const retargeting::Rig rig = retargeting::MakeRig(skeleton, clip);
+  BvhDocument document = MakeHierarchy(rig, 1 / metres_per_unit);
+  std::vector<BvhTrack> tracks(document.joints.size());
   retargeting::PoseFitter fitter(rig, clip.frame_rate_hz);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const retargeting::RigPose& pose = fitter.Fit(clip.poses[frame]);
-    tracks[0].places.push_back(pose.root_position * units_per_metre);
-    for (std::size_t j = 0; j < pose.rotations.size(); ++j) {
-      tracks[static_cast<std::size_t>(document_joints[j])].turns.push_back(pose.rotations[j]);
+    tracks[0].places.push_back(pose.root_position * (1 / metres_per_unit));
+    std::size_t joint = 0;
+    for (std::size_t j = 0; j < tracks.size(); ++j) {
+      if (!document.joints[j].end_site) tracks[j].turns.push_back(pose.rotations[joint++]);
     }
   }
-  return tracks;
-}
-
-}  // namespace
-
-absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
-                                  double metres_per_unit) {
-  if (absl::Status status = CheckJoints(clip, skeleton); !status.ok()) return status;
-  const retargeting::Rig rig = retargeting::MakeRig(skeleton, clip);
-  std::vector<int> document_joints;
-  BvhDocument document = MakeHierarchy(rig, 1 / metres_per_unit, &document_joints);
-  WriteMotion(TracksOf(rig, clip, document_joints, document.joints.size(), 1 / metres_per_unit),
-              clip.frame_rate_hz, &document);
+  WriteMotion(tracks, clip.frame_rate_hz, &document);
   return document;
 }
 
 namespace {
 
 // A person's rig, and what its file needs to be written again.
-struct Rig {
-  BvhDocument person;
-  retargeting::CharacterFit fit;
-  retargeting::CharacterRig rig;
-  std::vector<Quaternion> axes;  // [joints], of the joints at rest, in the file's axes
-};
-
-// The rest pose is that of the offsets, or of a frame if the offsets make no standing person.
-absl::StatusOr<Rig> ReadRig(const BvhDocument& document, absl::string_view source,
-                            const BvhImportOptions& options) {
-  Rig rig;
-  BvhImportOptions reading = options;
-  reading.fit = &rig.fit;
-  const absl::StatusOr<motion::Clip> read = FromBvh(document, source, reading);
-  if (!read.ok()) return read.status();
-  const Range joints = JointsOfPerson(document, options.person);
-  rig.person = PersonOf(document, joints);
-  const retargeting::JointTree tree = TreeOf(rig.person);
-  rig.rig = RestRig(tree, rig.fit);
-  rig.axes.resize(rig.person.joints.size());
-  const absl::StatusOr<std::optional<int>> frame =
-      retargeting::FindRestFrame(rig.rig, *read, source);
-  if (!frame.ok()) return frame.status();
-  if (!frame->has_value()) return rig;
-  NoteRestFrame(**frame, options.report);
-  const BvhPose pose = PoseAt(document, **frame);
-  const auto first = static_cast<std::ptrdiff_t>(joints.begin);
-  const auto last = static_cast<std::ptrdiff_t>(joints.end);
-  rig.rig = RestRig(tree, rig.fit, {pose.positions.begin() + first, pose.positions.begin() + last});
-  rig.axes.assign(pose.rotations.begin() + first, pose.rotations.begin() + last);
-  return rig;
-}
-
-class RigWriter {
+class RigFile {
  public:
-  RigWriter(Rig rig, absl::string_view source)
-      : document_(std::move(rig.person)),
-        source_(source),
-        fit_(std::move(rig.fit)),
-        rig_(std::move(rig.rig)),
-        axes_(std::move(rig.axes)),
-        to_world_(retargeting::ToWorldAxes(fit_.up_axis)) {
+  explicit RigFile(absl::string_view source) : source_(source) {}
+
+  // The rest pose is that of the offsets, or of a frame if the offsets make no standing person.
+  absl::Status Read(const BvhDocument& document, const BvhImportOptions& options) {
+    BvhImportOptions reading = options;
+    reading.fit = &fit_;
+    const absl::StatusOr<motion::Clip> read = FromBvh(document, source_, reading);
+    if (!read.ok()) return read.status();
+    const Range joints = JointsOfPerson(document, options.person);
+    document_ = PersonOf(document, joints);
+    const retargeting::JointTree tree = TreeOf(document_);
+    rig_ = RestRig(tree, fit_);
+    axes_.resize(document_.joints.size());
+    to_world_ = retargeting::ToWorldAxes(fit_.up_axis);
+    const absl::StatusOr<std::optional<int>> frame =
+        retargeting::FindRestFrame(rig_, *read, source_);
+    if (!frame.ok()) return frame.status();
+    if (frame->has_value()) {
+      if (options.report != nullptr) {
+        options.report->remarks.push_back(
+            absl::StrCat("rest pose: that of frame ", **frame,
+                         ", because the bones of the rig at rest make no standing person"));
+      }
+      const BvhPose pose = PoseAt(document, **frame);
+      const auto first = static_cast<std::ptrdiff_t>(joints.begin);
+      const auto last = static_cast<std::ptrdiff_t>(joints.end);
+      rig_ = RestRig(tree, fit_, {pose.positions.begin() + first, pose.positions.begin() + last});
+      axes_.assign(pose.rotations.begin() + first, pose.rotations.begin() + last);
+    }
     // Joints below the root may also have position channels.
     for (std::size_t j = 0; j < document_.joints.size(); ++j) {
       rig_.moves[j] = document_.joints[j].channels.size() == 6;
     }
+    return absl::OkStatus();
   }
 
   absl::StatusOr<BvhDocument> Write(const motion::Clip& clip) {
@@ -306,11 +280,11 @@ class RigWriter {
                      "this joint"));
   }
 
-  BvhDocument document_;
-  std::string source_;
+  const std::string source_;
+  BvhDocument document_;  // of the person
   retargeting::CharacterFit fit_;
   retargeting::CharacterRig rig_;
-  std::vector<Quaternion> axes_;  // [joints], at rest
+  std::vector<Quaternion> axes_;  // [joints], of the joints at rest, in the file's axes
   Quaternion to_world_;
 };
 
@@ -318,9 +292,10 @@ class RigWriter {
 
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
                                        absl::string_view source, const BvhImportOptions& options) {
-  absl::StatusOr<Rig> read = ReadRig(rig, source, options);
-  if (!read.ok()) return read.status();
-  return RigWriter(*std::move(read), source).Write(clip);
+  RigFile file(source);
+  absl::Status status = file.Read(rig, options);
+  if (!status.ok()) return status;
+  return file.Write(clip);
 }
 
 }  // namespace duet::formats::bvh

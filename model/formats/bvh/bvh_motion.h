@@ -33,10 +33,9 @@ absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_v
 // frame to frame. If bone lengths are constant, positions are exact; otherwise a joint is off by
 // the sum of the differences between the bones from the root to the joint and their medians.
 //
-// Errors: INVALID_ARGUMENT if the clip's joints are not the skeleton's, it has no frame, its frame
-//         rate is out of range or a position is not finite.
-absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
-                                  double metres_per_unit = 0.01);
+// Requires a clip of the skeleton's joints that CheckClip accepts.
+BvhDocument ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
+                  double metres_per_unit = 0.01);
 
 // Writes a clip of the joints of `options.skeleton` onto the rig of a BVH
 // (retargeting::TransferToRig). Its names, hierarchy, offsets, channels and their order, unit and

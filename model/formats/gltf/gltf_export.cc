@@ -4,7 +4,6 @@
 #include "absl/strings/str_cat.h"
 #include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/gltf/gltf_writer.h"
-#include "model/motion/recorded_motion.h"
 #include "model/retargeting/mannequin.h"
 #include "model/retargeting/rig_fitting.h"
 
@@ -188,12 +187,8 @@ class GltfExporter {
 
 }  // namespace
 
-absl::StatusOr<std::string> FormatGltf(const std::vector<motion::Clip>& people,
-                                       const motion::Skeleton& skeleton,
-                                       const motion::Provenance* provenance,
-                                       GltfContainer container) {
-  absl::Status status = CheckPeople(people, skeleton);
-  if (!status.ok()) return status;
+std::string FormatGltf(const std::vector<motion::Clip>& people, const motion::Skeleton& skeleton,
+                       const motion::Provenance* provenance, GltfContainer container) {
   return GltfExporter(skeleton).Export(people, provenance, container);
 }
 

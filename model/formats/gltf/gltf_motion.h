@@ -51,14 +51,10 @@ enum class GltfContainer {
 // share one animation. Units are metres, y up, in the clips' world. The rest pose is the T pose of
 // MakeRig with the feet on the floor at the origin. Joints are nodes with the skeleton's names.
 // Every joint is exactly at its position in the clip: bones rotate, and those whose length changes
-// are also translated. The scene's extras hold `provenance`, which may be null.
-//
-// Errors: INVALID_ARGUMENT if there are not one or two people, their joints are not the
-//         skeleton's, they differ in frames or rate, or a position is not finite.
-absl::StatusOr<std::string> FormatGltf(const std::vector<motion::Clip>& people,
-                                       const motion::Skeleton& skeleton,
-                                       const motion::Provenance* provenance,
-                                       GltfContainer container);
+// are also translated. The scene's extras hold `provenance`, which may be null. Requires people
+// whom CheckPeople accepts.
+std::string FormatGltf(const std::vector<motion::Clip>& people, const motion::Skeleton& skeleton,
+                       const motion::Provenance* provenance, GltfContainer container);
 
 // Writes a clip of the joints of `options.skeleton` onto a character of a glTF file. The nodes,
 // rest pose, skins, meshes and materials of the file are kept. One new animation of the character

@@ -67,7 +67,7 @@ motion::Clip Follower() {
 class RestPoseTest : public ::testing::Test {
  protected:
   RestPoseTest()
-      : standing_(ToBvh(test::MakePerson(), motion::SbuSkeleton(), 0.01).value()),
+      : standing_(ToBvh(test::MakePerson(), motion::SbuSkeleton(), 0.01)),
         flat_(Flatten(standing_)) {}
 
   const BvhDocument standing_;
