@@ -69,38 +69,19 @@ class Body {
   const motion::Poses& poses_;
 };
 
-// `size`: of the body, in the unit of the poses.
-absl::Status CheckPlaces(absl::string_view source, const motion::Skeleton& skeleton,
-                         const motion::Poses& poses, const JointMap& map,
-                         const std::vector<std::string>& file_joints, double size) {
-  const Body body(skeleton, poses);
-  for (const char* name : {"hip", "shoulder"}) {
-    const std::string left = absl::StrCat("left_", name), right = absl::StrCat("right_", name);
-    const double distance = body.Distance(left, right);
-    if (distance < 0 || !(distance < kOnePlace * size)) continue;
-    const auto in_file = [&](const std::string& joint) {
-      const auto index = static_cast<std::size_t>(skeleton.Find(joint));
-      return file_joints[static_cast<std::size_t>(map.sources[index].terms[0].joint)];
-    };
-    return MendedBy(absl::InvalidArgumentError(
-                        absl::StrCat(source, ": joints: expected ", left, " and ", right,
-                                     " in two places, got ", in_file(left), " and ", in_file(right),
-                                     " in one; specify a joint map such as ", left, "=NAME")),
-                    motion::ReadingSetting::kJointMap);
-  }
-  return absl::OkStatus();
-}
-
 class ClipMaker {
  public:
   ClipMaker(const Character& character, absl::string_view source, const CharacterOptions& options)
-      : character_(character), source_(source), options_(options) {}
+      : character_(character),
+        source_(source),
+        options_(options),
+        report_(options.report != nullptr ? *options.report : unread_) {}
 
   absl::StatusOr<motion::Clip> Make() {
-    if (options_.report != nullptr) options_.report->file_joints = character_.tree.names;
-    absl::StatusOr<JointMap> map = MapJoints(
-        source_, character_.tree, options_.skeleton, options_.joint_overrides,
-        options_.report == nullptr ? nullptr : &options_.report->joints, options_.missing_toes);
+    report_.file_joints = character_.tree.names;
+    absl::StatusOr<JointMap> map =
+        MapJoints(source_, character_.tree, options_.skeleton, options_.joint_overrides,
+                  &report_.joints, options_.missing_toes);
     if (!map.ok()) return map.status();
     const absl::StatusOr<double> scale = MetresPerUnit(map->straight);
     if (!scale.ok()) return scale.status();
@@ -118,8 +99,7 @@ class ClipMaker {
       position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
     const absl::Status body =
-        CheckPlaces(source_, options_.skeleton, clip.poses, *map, character_.tree.names,
-                    std::max(leg, Body(options_.skeleton, clip.poses).Size()));
+        CheckBody(source_, options_.skeleton, clip.poses, *map, character_.tree.names, leg);
     if (!body.ok()) return body;
     if (options_.fit != nullptr) {
       *options_.fit = {*scale, coordinates.up_axis, *std::move(map)};
@@ -128,11 +108,6 @@ class ClipMaker {
   }
 
  private:
-  void Warn(const std::string& what) const {
-    if (options_.report == nullptr) return;
-    options_.report->remarks.push_back(absl::StrCat("warning: ", what));
-  }
-
   absl::Status UnitNeeded(absl::string_view why) const {
     return MendedBy(absl::InvalidArgumentError(
                         absl::StrCat(source_, ": size: ", why, "; specify the metres per unit")),
@@ -146,7 +121,7 @@ class ClipMaker {
 
   absl::StatusOr<double> MetresPerUnit(const std::vector<motion::Vec3>& straight) {
     if (options_.metres_per_unit.has_value()) {
-      ReportUnit({absl::StrCat(*options_.metres_per_unit, " m"), Origin::kGiven, ""});
+      report_.unit = Setting{absl::StrCat(*options_.metres_per_unit, " m"), Origin::kGiven, ""};
       const absl::Status valid = CheckMetresPerUnit(*options_.metres_per_unit);
       if (!valid.ok()) return valid;
       return *options_.metres_per_unit;
@@ -158,48 +133,41 @@ class ClipMaker {
     const std::string& root =
         options_.skeleton.joint_names[static_cast<size_t>(options_.skeleton.root)];
     if (const std::optional<motion::InferredUnit> unit = motion::InferUnit({length})) {
-      const std::string why =
-          absl::StrCat("foot to ", root, " is ", Rounded(length * unit->metres, 0.01), " m");
-      ReportUnit({unit->name, Origin::kGuessed, why});
+      report_.unit = Setting{
+          unit->name, Origin::kGuessed,
+          absl::StrCat("foot to ", root, " is ", Rounded(length * unit->metres, 0.01), " m")};
       return unit->metres;
     }
     if (!(length >= kSmallestLeg)) {
       return UnitNeeded(
           absl::StrCat("expected a distance from foot to ", root, ", got ", length, " units"));
     }
-    ReportUnit({absl::StrCat(kTypicalLeg / length, " m"), Origin::kGuessed,
-                absl::StrCat("foot to ", root, " is ", length, " units")});
-    Warn(absl::StrCat("unit: a guess: legs of ", length,
-                      " units are no person's in any usual unit, and were read as ", kTypicalLeg,
-                      " m; specify the metres per unit if the size matters"));
+    report_.unit = Setting{absl::StrCat(kTypicalLeg / length, " m"), Origin::kGuessed,
+                           absl::StrCat("foot to ", root, " is ", length, " units")};
+    report_.remarks.push_back(
+        absl::StrCat("warning: unit: a guess: legs of ", length,
+                     " units are no person's in any usual unit, and were read as ", kTypicalLeg,
+                     " m; specify the metres per unit if the size matters"));
     return kTypicalLeg / length;
-  }
-
-  void ReportUnit(Setting unit) const {
-    if (options_.report != nullptr) options_.report->unit = std::move(unit);
-  }
-
-  void ReportUpAxis(motion::UpAxis axis, Origin origin, const char* why) const {
-    if (options_.report == nullptr) return;
-    options_.report->up_axis = Setting{std::string(UpAxisName(axis)), origin, why};
   }
 
   motion::UpAxis UpAxis(const motion::Clip& clip) {
     if (options_.up_axis.has_value()) {
-      ReportUpAxis(*options_.up_axis, Origin::kGiven, "");
+      report_.up_axis = Setting{std::string(UpAxisName(*options_.up_axis)), Origin::kGiven, ""};
       return *options_.up_axis;
     }
     const std::optional<motion::UpAxis> found =
         motion::InferUpAxis(options_.skeleton, {&clip.poses});
     const motion::UpAxis up = found.value_or(motion::UpAxis::kYUp);
-    ReportUpAxis(up, found.has_value() ? Origin::kGuessed : Origin::kDefault,
-                 !found.has_value()             ? ""
-                 : up == motion::UpAxis::kYDown ? "the feet are above the root along it"
-                                                : "the feet are below the root along it");
+    report_.up_axis = Setting{
+        std::string(UpAxisName(up)), found.has_value() ? Origin::kGuessed : Origin::kDefault,
+        !found.has_value()             ? ""
+        : up == motion::UpAxis::kYDown ? "the feet are above the root along it"
+                                       : "the feet are below the root along it"};
     if (!found.has_value() && options_.skeleton.feet) {
-      Warn(
-          "up axis: expected a person who stands along y, z or -y, got none; assuming y; specify "
-          "the up axis if it is another");
+      report_.remarks.push_back(
+          "warning: up axis: expected a person who stands along y, z or -y, got none; assuming y; "
+          "specify the up axis if it is another");
     }
     return up;
   }
@@ -207,6 +175,8 @@ class ClipMaker {
   const Character& character_;
   absl::string_view source_;
   const CharacterOptions& options_;
+  ReadingReport unread_;
+  ReadingReport& report_;
 };
 
 }  // namespace
@@ -224,8 +194,24 @@ absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_vie
 
 absl::Status CheckBody(absl::string_view source, const motion::Skeleton& skeleton,
                        const motion::Poses& poses, const JointMap& map,
-                       const std::vector<std::string>& file_joints) {
-  return CheckPlaces(source, skeleton, poses, map, file_joints, Body(skeleton, poses).Size());
+                       const std::vector<std::string>& file_joints, double least_size) {
+  const Body body(skeleton, poses);
+  const double size = std::max(least_size, body.Size());
+  for (const char* name : {"hip", "shoulder"}) {
+    const std::string left = absl::StrCat("left_", name), right = absl::StrCat("right_", name);
+    const double distance = body.Distance(left, right);
+    if (distance < 0 || !(distance < kOnePlace * size)) continue;
+    const auto in_file = [&](const std::string& joint) {
+      const auto index = static_cast<std::size_t>(skeleton.Find(joint));
+      return file_joints[static_cast<std::size_t>(map.sources[index].terms[0].joint)];
+    };
+    return MendedBy(absl::InvalidArgumentError(
+                        absl::StrCat(source, ": joints: expected ", left, " and ", right,
+                                     " in two places, got ", in_file(left), " and ", in_file(right),
+                                     " in one; specify a joint map such as ", left, "=NAME")),
+                    motion::ReadingSetting::kJointMap);
+  }
+  return absl::OkStatus();
 }
 
 namespace {
@@ -321,74 +307,51 @@ Quaternion ToWorldAxes(motion::UpAxis up_axis) {
   return FromAxes(in_world({1, 0, 0}), in_world({0, 1, 0}), in_world({0, 0, 1}));
 }
 
-CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit) {
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
+                     const std::vector<Vec3d>& positions) {
   const Quaternion to_world = ToWorldAxes(fit.up_axis);
+  const auto in_metres = [&](Vec3d way) { return Rotate(to_world, way) * fit.metres_per_unit; };
   CharacterRig rig;
   rig.names = tree.names;
   rig.parents = tree.parents;
   rig.joints = fit.joints;
   for (std::size_t j = 0; j < tree.names.size(); ++j) {
     const int parent = tree.parents[j];
-    const Vec3d offset = Rotate(to_world, tree.offsets[j]) * fit.metres_per_unit;
-    rig.positions.push_back(parent < 0 ? Vec3d{} : rig.positions[Index(parent)] + offset);
     rig.moves.push_back(parent < 0);
+    if (!positions.empty()) {
+      rig.positions.push_back(in_metres(positions[j] - positions[0]));
+    } else {
+      rig.positions.push_back(
+          parent < 0 ? Vec3d{} : rig.positions[Index(parent)] + in_metres(tree.offsets[j]));
+    }
   }
   return rig;
-}
-
-CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
-                     const std::vector<Vec3d>& positions) {
-  const Quaternion to_world = ToWorldAxes(fit.up_axis);
-  CharacterRig rig = RestRig(tree, fit);
-  for (std::size_t j = 0; j < positions.size(); ++j) {
-    const Vec3d from_root = positions[j] - positions[0];
-    rig.positions[j] = Rotate(to_world, from_root) * fit.metres_per_unit;
-  }
-  return rig;
-}
-
-void NoteRestFrame(int frame, ReadingReport* report) {
-  if (report == nullptr) return;
-  report->remarks.push_back(
-      absl::StrCat("rest pose: that of frame ", frame,
-                   ", because the bones of the rig at rest make no standing person"));
 }
 
 namespace {
 
 constexpr std::size_t kMostShownNames = 30;
 
-class RoleFinder {
- public:
-  RoleFinder(const motion::Clip& clip, const JointMap& body) : clip_(clip), body_(body) {}
-
-  // Joints on both sides with one of these bases that the body does not use.
-  std::optional<motion::JointPair> Find(std::initializer_list<const char*> bases) const {
-    const int left = Find(BodySide::kLeft, bases), right = Find(BodySide::kRight, bases);
-    if (left < 0 || right < 0) return std::nullopt;
-    return motion::JointPair{left, right};
-  }
-
- private:
-  int Find(BodySide side, std::initializer_list<const char*> bases) const {
+// Joints on both sides with one of these bases that the body does not use.
+std::optional<motion::JointPair> FindEnds(const motion::Clip& clip, const JointMap& body,
+                                          std::initializer_list<const char*> bases) {
+  const auto is_used = [&body](int joint) {
+    return std::any_of(body.sources.begin(), body.sources.end(), [joint](const auto& source) {
+      return source.terms.size() == 1 && source.terms[0].joint == joint;
+    });
+  };
+  const auto find = [&](BodySide side) {
     for (const char* base : bases) {
-      for (int joint = 0; joint < clip_.joint_count(); ++joint) {
-        const std::string& name = clip_.joint_names[static_cast<std::size_t>(joint)];
-        if (ParseJointName(name) == ParsedJointName{side, base} && !IsUsed(joint)) return joint;
+      for (int joint = 0; joint < clip.joint_count(); ++joint) {
+        const ParsedJointName name = ParseJointName(clip.joint_names[Index(joint)]);
+        if (name == ParsedJointName{side, base} && !is_used(joint)) return joint;
       }
     }
     return -1;
-  }
-
-  bool IsUsed(int joint) const {
-    return std::any_of(body_.sources.begin(), body_.sources.end(), [joint](const auto& source) {
-      return source.terms.size() == 1 && source.terms[0].joint == joint;
-    });
-  }
-
-  const motion::Clip& clip_;
-  const JointMap& body_;
-};
+  };
+  const motion::JointPair ends{find(BodySide::kLeft), find(BodySide::kRight)};
+  return ends.left < 0 || ends.right < 0 ? std::nullopt : std::make_optional(ends);
+}
 
 absl::Status NoPerson(absl::string_view field, const motion::Clip& clip) {
   const std::size_t shown = std::min(clip.joint_names.size(), kMostShownNames);
@@ -411,9 +374,8 @@ absl::StatusOr<BodyRoles> FindBodyRoles(absl::string_view field, const motion::C
       MapJoints(field, clip.joint_names, clip.poses, motion::SbuSkeleton());
   if (!body.ok()) return NoPerson(field, clip);
   BodyRoles roles;
-  const RoleFinder finder(clip, *body);
-  roles.toes = finder.Find({"toe", "toebase", "toes", "ball", "footend", "foot"});
-  roles.hands = finder.Find({"hand", "handmiddle1", "middle1", "middle01"});
+  roles.toes = FindEnds(clip, *body, {"toe", "toebase", "toes", "ball", "footend", "foot"});
+  roles.hands = FindEnds(clip, *body, {"hand", "handmiddle1", "middle1", "middle01"});
   roles.body = *std::move(body);
   return roles;
 }

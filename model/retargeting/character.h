@@ -58,13 +58,14 @@ absl::Status CheckMetresPerUnit(double metres);
 absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_view source,
                                     const CharacterOptions& options);
 
-// Checks that the joints that were found in a file make a body. `poses` are the skeleton's.
+// Checks that the joints that were found in a file make a body. `poses` are the skeleton's; the
+// body is at least as large as `least_size`, in their unit.
 //
 // Errors: INVALID_ARGUMENT naming `source` and the file's joints if both hips or both shoulders are
 //         in one place in the whole motion: they are helpers with the names of joints.
 absl::Status CheckBody(absl::string_view source, const motion::Skeleton& skeleton,
                        const motion::Poses& poses, const JointMap& map,
-                       const std::vector<std::string>& file_joints);
+                       const std::vector<std::string>& file_joints, double least_size = 0);
 
 // The user's rig in its rest pose, as read from a file: the target of a motion transfer.
 //
@@ -99,19 +100,12 @@ absl::StatusOr<std::optional<int>> FindRestFrame(const CharacterRig& rig, const 
 Quaternion ToWorldAxes(motion::UpAxis up_axis);
 
 // The rig of a file whose joints have no rotation at rest (BVH): the tree's offsets define the
-// rest positions, with roots at the origin. Only roots are translated.
+// rest positions, with roots at the origin, unless `positions` of the tree's joints in the file's
+// unit and axes do. Only roots are translated.
 //
 // `fit` is the result of ToClip for the same tree.
-CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit);
-
-// The same rig with another pose as its rest pose. `positions` are those of the tree's joints in
-// the file's unit and axes.
 CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
-                     const std::vector<Vec3d>& positions);
-
-// Reports that a frame of a rig's motion replaces its rest pose (FindRestFrame). `report` may be
-// null.
-void NoteRestFrame(int frame, ReadingReport* report);
+                     const std::vector<Vec3d>& positions = {});
 
 // The joints of a clip in their roles, for any skeleton whose joints are named as in
 // docs/formats.md. "left_hand" and "left_foot" of the body are the wrist and the ankle.
