@@ -56,7 +56,7 @@ struct GalleryContent {
 };
 
 // Returns a self-contained HTML page that plays motions side by side, synchronised and from the
-// same camera, with curves of speed and distance below the timeline.
+// same camera.
 //
 // Errors: INVALID_ARGUMENT that names the motion if there are no motions or more than kMostMotions,
 //         joints differ from the first motion's, a motion is no valid clip (motion::CheckClip),

@@ -218,11 +218,11 @@ class GalleryTest(browser.BrowserTest):
         self.assertEqual(page.state()["state"], "ready", page.state())
         return page
 
-    def test_plays_all_motions_at_once_until_the_curves_are_clicked(self):
+    def test_plays_all_motions_at_once_until_the_timeline_is_clicked(self):
         page = self.open_good()
         self.assertEqual(page.state()["cells"], "2")
         page.wait_until("Number(document.documentElement.dataset.frame) > 2")
-        page.click("#charts")
+        page.click("#scrub")
         last = int(page.evaluate("document.getElementById('scrub').max"))
         self.assertFalse(page.evaluate("Boolean(document.querySelector('#play.playing'))"))
         self.assertAlmostEqual(int(page.text("#frame")), last / 2, delta=2)
@@ -241,22 +241,6 @@ class GalleryTest(browser.BrowserTest):
             self.assertEqual([count > 300 for count in counts()], [True, True, True, False], key)
         page.click("[data-person=leader]")
         self.assertEqual([count > 0 for count in counts()], [False, True, False, False])
-
-    def test_curves_follow_the_timeline(self):
-        page = self.open_good("#frame=30&paused")
-        titles = page.evaluate(
-            "[...document.querySelectorAll('.chart b')].map((title) => title.textContent)")
-        self.assertEqual(titles, ["Speed", "Distance between them"])
-        counts = page.evaluate("[...document.querySelectorAll('.chart')]"
-                               ".map((chart) => chart.querySelectorAll('polyline').length)")
-        self.assertEqual(counts, [2, 1])  # one alone has no distance
-        line, thumb = page.evaluate("""(() => {
-          const last = Number(document.getElementById('scrub').max);
-          const track = document.getElementById('scrub').getBoundingClientRect();
-          return [document.querySelector('.chart .now').getBoundingClientRect().left,
-                  track.left + 7 + (track.width - 14) * 30 / last];
-        })()""")
-        self.assertAlmostEqual(line, thumb, delta=1.5)
 
 
 WRITE_TEST_PAGE = sys.argv.pop(1)

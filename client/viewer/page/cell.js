@@ -1,9 +1,8 @@
 // One motion of a gallery in its own scenery, with its transform to the space that all cells share.
 // In that space the leader starts at the origin and the follower is along +z.
 class Cell {
-  constructor(data, index, renderer) {
+  constructor(data, renderer) {
     this.name = data.name;
-    this.colour = CURVE_COLOURS[index % CURVE_COLOURS.length];
     this.motion = new Motion(data);
     this.scenery = new Scenery(this.motion, renderer, 1024);
     this.people = {};
@@ -12,15 +11,10 @@ class Cell {
       this.scenery.scene.add(figure.group);
       this.people[name] = {figure, path: this.scenery.addPath(name, COLOURS[name])};
     }
-    this.start = this.rootAt(0).setY(this.scenery.floor);
+    this.start = new THREE.Vector3().fromArray(this.motion.people.leader, this.motion.root * 3)
+        .setY(this.scenery.floor);
     const axis = this.motion.axis();
     this.yaw = Math.atan2(axis.x, axis.z);
-  }
-
-  rootAt(frame) {
-    const joint = Math.max(0, this.motion.find('torso'));
-    const at = (frame * this.motion.joints.length + joint) * 3;
-    return new THREE.Vector3().fromArray(this.motion.people.leader, at);
   }
 
   // Answers to one leader, and takes of one place, keep their relative positions.

@@ -5,8 +5,8 @@ class Gallery {
     this.renderer = makeRenderer(canvas);
     this.renderer.setScissorTest(true);
     this.renderer.info.autoReset = false;
-    this.cells = data.motions.map((motion, index) => new Cell(
-        {...motion, joints: data.joints, bones: data.bones}, index, this.renderer));
+    this.cells = data.motions.map((motion) => new Cell(
+        {...motion, joints: data.joints, bones: data.bones}, this.renderer));
     for (const cell of this.cells.slice(1)) cell.shareWorld(this.cells[0]);
     this.box = new THREE.Box3();
     for (const cell of this.cells) this.box.union(cell.sharedBox());
@@ -29,13 +29,11 @@ class Gallery {
   addLabel(cell) {
     const label = document.createElement('div');
     label.className = 'label';
-    const swatch = document.createElement('i');
-    swatch.style.background = cell.colour;
     const name = document.createElement('b');
     name.textContent = cell.name;
     const length = document.createElement('span');
     length.textContent = `${cell.motion.frames} frames at ${Number(cell.motion.frameRate.toFixed(2))} Hz`;
-    label.append(swatch, name, length);
+    label.append(name, length);
     this.canvas.parentElement.append(label);
     return label;
   }

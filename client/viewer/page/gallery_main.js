@@ -9,26 +9,15 @@ function start() {
   element('title').textContent = data.title;
   element('subtitle').textContent = data.subtitle;
   const gallery = new Gallery(element('stage'), data);
-  const {duration} = gallery;
 
   // Time is counted in frames of the motion with the highest rate.
   const frameRate = Math.max(...gallery.cells.map((cell) => cell.motion.frameRate));
-  const timeline = {frameRate, frames: Math.round(duration * frameRate) + 1};
+  const timeline = {frameRate, frames: Math.round(gallery.duration * frameRate) + 1};
   const player = new Player(timeline);
   root.dataset.frames = timeline.frames;
   root.dataset.cells = gallery.cells.length;
 
-  const curves = (make) => gallery.cells.map((cell) => ({cell, values: make(cell.motion)}))
-      .filter(({values}) => values !== null);
-  const distances = curves(distanceCurve);
-  const pairs = distances.length === gallery.cells.length;
-  const charts = [new Chart(element('charts'), pairs ? 'Speed of the follower' : 'Speed', 'm/s',
-                            curves(speedCurve), duration)];
-  if (distances.length > 0) {
-    charts.push(new Chart(element('charts'), 'Distance between them', 'm', distances, duration));
-  } else {
-    element('people').hidden = true;
-  }
+  element('people').hidden = gallery.cells.every(({motion}) => !motion.people.follower);
 
   let view = 'reset';  // until the visitor moves the camera
   let stale = true;    // something has changed since the last draw
@@ -58,19 +47,6 @@ function start() {
   };
   connectInput({player, showPerson, chooseView, touch});
   element('scrub').max = player.last;
-  const seekTo = (event) => {
-    const {left, width} = element('charts').getBoundingClientRect();
-    player.playing = false;
-    player.seek(player.last * (event.clientX - left) / width);
-    touch();
-  };
-  element('charts').addEventListener('pointerdown', (event) => {
-    element('charts').setPointerCapture(event.pointerId);
-    seekTo(event);
-  });
-  element('charts').addEventListener('pointermove', (event) => {
-    if (event.buttons & 1) seekTo(event);
-  });
 
   const opening = openingState();
   if ('frame' in opening) player.seek(Number(opening.frame) || 0);
@@ -90,9 +66,7 @@ function start() {
     gallery.controls.update();
     if (stale) {
       stale = false;
-      const at = player.frame / frameRate;
-      root.dataset.triangles = gallery.draw(at);
-      for (const chart of charts) chart.update(Math.min(at, duration));
+      root.dataset.triangles = gallery.draw(player.frame / frameRate);
       showTime({player, frameRate});
       root.dataset.draws = ++draws;
       root.dataset.frame = Math.round(player.frame);
