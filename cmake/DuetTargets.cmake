@@ -47,7 +47,7 @@ function(duet_program)
 endfunction()
 
 # duet_share_cores(name waits): how many half cores a test takes. A test that mostly waits, for timeouts and processes, runs beside
-# others: scripts/check.py runs tests on four half cores.
+# others: scripts/check.py runs tests on six half cores.
 function(duet_share_cores name waits)
   if(waits)
     set_tests_properties(${name} PROPERTIES PROCESSORS 1)

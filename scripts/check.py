@@ -24,8 +24,9 @@ GUIDE = ROOT / "docs/guides/checks.md"
 BUILD = "build/release"
 NEEDS = ("nothing", "configure", "build")  # each includes those before it
 IN_MAKE_TEST = ("before", "beside", "no")  # the tests
-# Four half cores: a test takes two, or one if it mostly waits (duet_share_cores in cmake/DuetTargets.cmake).
-TESTS = f"ctest --test-dir {BUILD} --output-on-failure --parallel 4"
+# Six half cores keep two cores busy, because even tests that compute wait for the processes that they start. A test takes two half
+# cores, or one if it mostly waits (duet_share_cores in cmake/DuetTargets.cmake).
+TESTS = f"ctest --test-dir {BUILD} --output-on-failure --parallel 6"
 
 
 class Check(typing.NamedTuple):
