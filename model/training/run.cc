@@ -26,6 +26,9 @@
 #include "model/training/paper_trainer.h"
 
 namespace duet::training {
+
+extern const char kGitRevision[];  // that this program was configured from; CMake writes it
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,7 +212,7 @@ absl::Status Write(const RunPlan& plan, checkpoint::Checkpoint checkpoint) {
 absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
                     const std::vector<int>& train, checkpoint::Manifest manifest,
                     const EpochReport& last, EpochTrainer* trainer, std::ostream* progress) {
-  manifest.git_revision = DUET_GIT_REVISION;  // that this program was configured from
+  manifest.git_revision = kGitRevision;
   // A run that was killed after its last epoch has no report of it any more.
   if (last.epoch > 0) manifest.metrics["training.reconstruction"] = last.reconstruction;
   if (std::isfinite(trainer->best_afd())) {
