@@ -7,6 +7,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "model/base/file.h"
+#include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
 #include "model/formats/flat/flat_files.h"
 #include "model/importing/steps.h"
@@ -97,20 +98,19 @@ absl::Status WriteAll(const fs::path& folder, const dataset::DatasetLayout& layo
     }
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
-    if (error)
+    if (error) {
       return absl::PermissionDeniedError(absl::StrCat(path.string(), ": ", error.message()));
-    const absl::StatusOr<std::string> text =
-        FormatSbu({sequence.capture.first, sequence.capture.second}, options);
-    if (!text.ok()) return text.status();
-    if (absl::Status status = base::WriteFile(path, *text); !status.ok()) return status;
+    }
+    DUET_TRY(const std::string text,
+             FormatSbu({sequence.capture.first, sequence.capture.second}, options));
+    DUET_RETURN_IF_ERROR(base::WriteFile(path, text));
   }
-  absl::Status status = base::WriteFile(folder / "index.tsv", IndexText(sequences));
+  DUET_RETURN_IF_ERROR(base::WriteFile(folder / "index.tsv", IndexText(sequences)));
   const std::string time_lines = TimeLinesText(layout, sequences);
-  if (status.ok() && !time_lines.empty()) {
-    status = base::WriteFile(folder / "labels.tsv", time_lines);
+  if (!time_lines.empty()) {
+    DUET_RETURN_IF_ERROR(base::WriteFile(folder / "labels.tsv", time_lines));
   }
-  if (status.ok()) status = base::WriteFile(folder / "dataset.json", LayoutText(layout));
-  return status;
+  return base::WriteFile(folder / "dataset.json", LayoutText(layout));
 }
 
 // A hidden folder next to `folder`.

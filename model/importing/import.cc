@@ -15,6 +15,7 @@
 #include "model/base/counted.h"
 #include "model/base/file.h"
 #include "model/base/median.h"
+#include "model/base/status_macros.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
 #include "model/importing/steps.h"
@@ -45,36 +46,29 @@ constexpr double kNearest = 0.05, kFarthest = 10;
 // the median of all people.
 constexpr double kLegTolerance = 1.5;
 
-struct CaptureOptions {
-  motion::Skeleton skeleton;
-  retargeting::JointOverrides joint_overrides;
-  std::optional<double> frame_rate_hz;  // overrides the files' own
-  // Receives one note for each choice between several joints. May be null.
-  std::vector<std::string>* notes = nullptr;
-};
-
-bool HasHierarchy(formats::Format format) {
+bool HasHierarchy(std::optional<formats::Format> format) {
   return format == formats::Format::kBvh || format == formats::Format::kGltf ||
          format == formats::Format::kGlb;
 }
 
+// Formats with a hierarchy (BVH, glTF) keep the file's unit and axes. Every other format is read in
+// the coordinates that the file states; the default is metres, y up. `notes` receives one note for
+// each choice between several joints.
 absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side,
-                                        const CaptureOptions& options) {
-  formats::ReadOptions read;
-  read.side = side;
-  read.skeleton = options.skeleton;
-  read.joint_overrides = options.joint_overrides;
-  read.frame_rate_hz = options.frame_rate_hz;
+                                        formats::ReadOptions options,
+                                        std::vector<std::string>* notes) {
+  options.side = side;
   retargeting::ReadingReport report;
-  read.report = &report;
+  options.report = &report;
   const std::optional<formats::Format> format = formats::FormatOf(path);
-  if (format.has_value() && HasHierarchy(*format)) {
-    read.metres_per_unit = 1;
-    read.coordinates = motion::Coordinates{};
+  if (HasHierarchy(format)) {
+    options.metres_per_unit = 1;
+    options.coordinates = motion::Coordinates{};
   }
-  absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, read);
-  if (person.ok() && options.notes != nullptr) {
-    for (std::string& note : report.Notes()) options.notes->push_back(std::move(note));
+  absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, options);
+  if (person.ok()) {
+    const std::vector<std::string> more = report.Notes();
+    notes->insert(notes->end(), more.begin(), more.end());
   }
   if (person.ok() || format != formats::Format::kNpy) return person;
   return absl::Status(
@@ -100,41 +94,31 @@ double MedianRootDistance(const Capture& capture, int root) {
   return base::Median(std::move(distances));
 }
 
-motion::Clip Piece(const motion::Clip& whole, int first, int frames) {
-  motion::Clip piece;
-  piece.joint_names = whole.joint_names;
-  piece.frame_rate_hz = whole.frame_rate_hz;
-  piece.Append(whole.poses.frames(first, frames));
-  return piece;
-}
-
-// Reads both people. Formats with a hierarchy (BVH, glTF) keep the file's unit and axes. Every
-// other format is read in the coordinates that the file states; the default is metres, y up.
-//
-// Errors: INVALID_ARGUMENT naming the file, also if a file that must hold two people holds one.
+// Reads both people. Errors: INVALID_ARGUMENT naming the file, also if a file that must hold two
+// people holds one.
 absl::StatusOr<Capture> ReadCapture(const fs::path& folder, const PairFiles& files,
-                                    const CaptureOptions& options) {
+                                    const formats::ReadOptions& options,
+                                    std::vector<std::string>* notes) {
   const bool one_file = files.first == files.second;
-  absl::StatusOr<motion::Clip> first =
-      ReadPerson(folder / files.first, formats::Side::kLeft, options);
-  if (!first.ok()) return first.status();
-  absl::StatusOr<motion::Clip> second = ReadPerson(
-      folder / files.second, one_file ? formats::Side::kRight : formats::Side::kLeft, options);
-  if (!second.ok()) return second.status();
+  DUET_TRY(motion::Clip first,
+           ReadPerson(folder / files.first, formats::Side::kLeft, options, notes));
+  DUET_TRY(motion::Clip second,
+           ReadPerson(folder / files.second,
+                      one_file ? formats::Side::kRight : formats::Side::kLeft, options, notes));
   // The reader returns the only person of a file for either side.
-  if (first->poses == second->poses) {
+  if (first.poses == second.poses) {
     return absl::InvalidArgumentError(
         one_file
             ? "people: expected 2 in the file, or a file for each whose names end in _a and _b "
               "(or _leader and _follower), got 1"
             : "expected one motion for each person, got the same one in both files");
   }
-  const int frames = std::min(first->frame_count(), second->frame_count());
+  const int frames = std::min(first.frame_count(), second.frame_count());
   if (frames < kFewestFrames) {
     return absl::InvalidArgumentError(
         absl::StrCat("frames: expected at least ", kFewestFrames, ", got ", frames));
   }
-  return Capture{files, *std::move(first), *std::move(second)};
+  return Capture{files, std::move(first), std::move(second)};
 }
 
 // Resamples both people to one rate and truncates the longer one. Returns their difference in
@@ -176,8 +160,10 @@ std::vector<Capture> Cut(const Capture& capture, int longest) {
   std::vector<Capture> cut;
   for (int i = 0; i < pieces; ++i) {
     const int first = frames * i / pieces, count = frames * (i + 1) / pieces - first;
-    Capture piece = {capture.files, Piece(capture.first, first, count),
-                     Piece(capture.second, first, count)};
+    Capture piece = capture;
+    for (motion::Clip* person : {&piece.first, &piece.second}) {
+      person->poses = motion::Part(person->poses, first, count);
+    }
     absl::StrAppend(&piece.files.name, "_p", i + 1);
     cut.push_back(std::move(piece));
   }
@@ -229,16 +215,15 @@ class Importer {
       : options_(options), report_(*report) {}
 
   absl::Status Run() {
-    absl::Status status = CheckFolders();
-    if (status.ok()) status = FindPairs();
-    if (status.ok()) status = FindJoints();
-    if (status.ok()) status = ReadPairs();
-    if (status.ok()) status = FindCoordinates();
-    if (status.ok()) status = FindRate();
-    if (status.ok()) status = AlignPairs();
-    if (status.ok()) status = CheckRefused();
-    if (status.ok()) status = DescribeClasses();
-    if (!status.ok()) return status;
+    DUET_RETURN_IF_ERROR(CheckFolders());
+    DUET_RETURN_IF_ERROR(FindPairs());
+    DUET_RETURN_IF_ERROR(FindJoints());
+    DUET_RETURN_IF_ERROR(ReadPairs());
+    DUET_RETURN_IF_ERROR(FindCoordinates());
+    FindRate();
+    DUET_RETURN_IF_ERROR(AlignPairs());
+    DUET_RETURN_IF_ERROR(CheckRefused());
+    DUET_RETURN_IF_ERROR(DescribeClasses());
     ChooseLeaders();
     FindLevel();
     CutLongPairs();
@@ -268,9 +253,8 @@ class Importer {
   }
 
   absl::Status FindPairs() {
-    const absl::StatusOr<Listing> listing = ListMotions(options_.from);
-    if (!listing.ok()) return listing.status();
-    for (const auto& [extension, count] : listing->others) {
+    DUET_TRY(const Listing listing, ListMotions(options_.from));
+    for (const auto& [extension, count] : listing.others) {
       const std::string how = formats::HowToConvert("file" + extension);
       Assume("ignored",
              absl::StrCat(count, " ", extension.empty() ? "" : absl::StrCat(extension, " "),
@@ -284,22 +268,19 @@ class Importer {
     if (table.empty() && fs::exists(options_.from / kTableName, error)) {
       table = options_.from / kTableName;
     }
-    absl::StatusOr<Pairing> pairing = PairByName(listing->motions);
+    Pairing pairing = PairByName(listing.motions);
     if (!table.empty()) {
-      const absl::StatusOr<std::string> text =
-          base::ReadFile(table, kMaxTableBytes, "a table of pairs");
-      if (!text.ok()) return text.status();
-      pairing = PairByTable(*text, table.string(), listing->motions);
-      if (!pairing.ok()) return pairing.status();
+      DUET_TRY(const std::string text, base::ReadFile(table, kMaxTableBytes, "a table of pairs"));
+      DUET_TRY(pairing, PairByTable(text, table.string(), listing.motions));
     }
-    report_.refused = pairing->refused;
-    pairs_ = std::move(pairing->pairs);
+    report_.refused = pairing.refused;
+    pairs_ = std::move(pairing.pairs);
     if (pairs_.empty()) {
       return absl::InvalidArgumentError(absl::StrCat(
           options_.from.string(),
           ": expected pairs of motion files (kick_01_a.bvh and kick_01_b.bvh), or files "
           "of both people, got no pairs among ",
-          listing->motions.size(),
+          listing.motions.size(),
           " motion files; rename them or write a table (docs/guides/own_data.md)"));
     }
     Assume("pairs",
@@ -326,11 +307,13 @@ class Importer {
   }
 
   absl::Status ReadPairs() {
+    formats::ReadOptions options;
+    options.skeleton = skeleton_.skeleton;
+    options.joint_overrides = options_.joint_overrides;
+    options.frame_rate_hz = options_.frame_rate_hz;
     std::vector<std::string> notes;
-    const CaptureOptions options = {skeleton_.skeleton, options_.joint_overrides,
-                                    options_.frame_rate_hz, &notes};
     for (const PairFiles& files : pairs_) {
-      absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options);
+      absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options, &notes);
       if (capture.ok()) {
         captures_.push_back(*std::move(capture));
       } else {
@@ -397,7 +380,7 @@ class Importer {
     return absl::OkStatus();
   }
 
-  absl::Status FindRate() {
+  void FindRate() {
     std::map<double, int> rates;
     for (const Capture& capture : captures_) {
       ++rates[capture.first.frame_rate_hz];
@@ -412,7 +395,6 @@ class Importer {
         absl::StrFormat("%g frames per second, from files with %g", rate_hz_, found);
     if (rates.size() > 1) absl::StrAppend(&value, " and ", rates.size() - 1, " other rates");
     Assume("frame rate", value, "--to-rate HZ, --frame-rate HZ");
-    return absl::OkStatus();
   }
 
   absl::Status AlignPairs() {
@@ -423,10 +405,11 @@ class Importer {
       const double seconds = Align(rate_hz_, &capture);
       if (seconds > 1 / rate_hz_) ++differ;
       most = std::max(most, seconds);
-      if (const absl::Status status = CheckPlausible(capture, skeleton_.skeleton); !status.ok()) {
-        Refuse(capture.files, status);
-      } else {
+      const absl::Status status = CheckPlausible(capture, skeleton_.skeleton);
+      if (status.ok()) {
         good.push_back(std::move(capture));
+      } else {
+        Refuse(capture.files, status);
       }
     }
     captures_ = std::move(good);
@@ -462,17 +445,10 @@ class Importer {
       }
       classes_.push_back(std::move(one));
     }
-    absl::Status status = SetProperty("--symmetric", options_.symmetric,
-                                      [](dataset::ClassLayout* one) { one->symmetric = true; });
-    if (status.ok()) {
-      status = SetProperty("--handed", options_.handed,
-                           [](dataset::ClassLayout* one) { one->handed = true; });
-    }
-    if (status.ok()) {
-      status = SetProperty("--touches", options_.touches,
-                           [](dataset::ClassLayout* one) { one->touches = true; });
-    }
-    if (!status.ok()) return status;
+    using dataset::ClassLayout;
+    DUET_RETURN_IF_ERROR(SetProperty("--symmetric", options_.symmetric, &ClassLayout::symmetric));
+    DUET_RETURN_IF_ERROR(SetProperty("--handed", options_.handed, &ClassLayout::handed));
+    DUET_RETURN_IF_ERROR(SetProperty("--touches", options_.touches, &ClassLayout::touches));
     for (const dataset::ClassLayout& one : classes_) {
       Assume("class",
              absl::StrCat(one.name, ": ", base::Counted(counts[one.name], "pair"), "; ",
@@ -484,20 +460,18 @@ class Importer {
     return absl::OkStatus();
   }
 
-  template <typename Set>
   absl::Status SetProperty(const std::string& flag, const std::vector<std::string>& labels,
-                           Set set) {
+                           bool dataset::ClassLayout::*property) {
     for (const std::string& label : labels) {
       const auto one = std::find_if(classes_.begin(), classes_.end(),
                                     [&label](const auto& known) { return known.name == label; });
-      if (one != classes_.end()) {
-        set(&*one);
-        continue;
+      if (one == classes_.end()) {
+        const auto name = [](std::string* out, const auto& known) { out->append(known.name); };
+        return absl::InvalidArgumentError(absl::StrCat(flag, ": expected one of ",
+                                                       absl::StrJoin(classes_, ", ", name),
+                                                       ", got ", base::Quoted(label)));
       }
-      std::vector<std::string> known;
-      for (const dataset::ClassLayout& other : classes_) known.push_back(other.name);
-      return absl::InvalidArgumentError(absl::StrCat(
-          flag, ": expected one of ", absl::StrJoin(known, ", "), ", got ", base::Quoted(label)));
+      (*one).*property = true;
     }
     return absl::OkStatus();
   }
@@ -559,10 +533,10 @@ class Importer {
   void FindLevel() {
     std::vector<motion::Vec3> directions, feet;
     for (const motion::Poses* poses : People()) {
-      for (motion::Vec3 up : motion::StandingDirections(skeleton_.skeleton, *poses)) {
-        directions.push_back(up);
-      }
-      for (motion::Vec3 foot : motion::LowerFeet(skeleton_.skeleton, *poses)) feet.push_back(foot);
+      const auto standing = motion::StandingDirections(skeleton_.skeleton, *poses);
+      const auto lower = motion::LowerFeet(skeleton_.skeleton, *poses);
+      directions.insert(directions.end(), standing.begin(), standing.end());
+      feet.insert(feet.end(), lower.begin(), lower.end());
     }
     const motion::Lean lean = motion::MeanLean(directions);
     const double degrees = std::hypot(lean.x, lean.z);
