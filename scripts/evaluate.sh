@@ -70,7 +70,7 @@ sampled() {
 measure() {
   local config named=("full=${runs}/ablation/default")
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
-    --title "Methods: leave one subject out" --baselines "${methods}" --printed \
+    --title "Methods: leave one subject out" --baselines "${methods}" \
     --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \
     --metrics "${placed},${quality},${touch},${judged}"
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 12_as_served --as-served \

@@ -54,7 +54,7 @@ def table_lines(table, numbering=""):
              "|---|" + "---:|" * len(table["columns"])]
     for row, row_cells in zip(table["rows"], cells(table)):
         name = escape(row["name"])
-        line = f"| *{escape(row['name'] + ' (printed)')}* |" if row["printed"] else f"| {name} |"
+        line = f"| *{escape(row['name'] + ' (printed)')}* |" if row.get("printed") else f"| {name} |"
         lines.append(line + "".join(f" **{text}** |" if best else f" {text} |"
                                     for text, best in row_cells))
     for note in table["notes"]:

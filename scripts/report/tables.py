@@ -15,7 +15,7 @@ def best_of(table, column):
     if table["best"] == "none":
         return None
     values = [row["values"][column] for row in table["rows"]
-              if not row["printed"] and row["values"][column] is not None]
+              if not row.get("printed") and row["values"][column] is not None]
     if not values:
         return None
     return rounded(min(values) if table["best"] == "lowest" else max(values), table["decimals"])
@@ -27,6 +27,6 @@ def cells(table):
     rows = []
     for row in table["rows"]:
         texts = [rounded(value, table["decimals"]) for value in row["values"]]
-        rows.append([(text, text == best[column] and not row["printed"])
+        rows.append([(text, text == best[column] and not row.get("printed"))
                      for column, text in enumerate(texts)])
     return rows

@@ -23,7 +23,6 @@ constexpr char kNoBaseline[] = "none";
 struct FoldsFlags : ExperimentFlags {
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
   std::vector<std::string> metrics = {"afd", "afd_squared"};
-  bool printed = false;
 };
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
@@ -105,7 +104,7 @@ class Scorer {
     const int classes = dataset.class_count();
     metrics::SampledMotions answers;
     for (const FoldAnswers& set : sets) answers.push_back(Pool(set));
-    report::MethodFigures figures{row, false, ScoreByClass(dataset, Pool(answers))};
+    report::MethodFigures figures{row, ScoreByClass(dataset, Pool(answers))};
     auto& by_metric = figures.by_metric;
     by_metric[report::kMeanAnswerAfd] = ScoreByClass(dataset, MeanAnswers(answers))["afd"];
     by_metric[report::kBestAnswerAfd] = ScoreByClass(dataset, BestAnswers(dataset, answers))["afd"];
@@ -162,8 +161,7 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experi
     DUET_RETURN_IF_ERROR(answers.status());
     rows.push_back(scorer.Score(model.name, *answers));
   }
-  rows.push_back(scorer.Score("captured", {CapturedAnswers(experiment)}));
-  rows.back().captured = true;
+  rows.push_back(scorer.Score(report::kCaptured, {CapturedAnswers(experiment)}));
   return rows;
 }
 
@@ -178,13 +176,7 @@ absl::StatusOr<report::Section> RunFolds(const FoldsFlags& flags) {
       "root (+root) or its pose (+pose).");
   for (const report::MetricStyle& style : report::MetricStyles()) {
     if (!Contains(flags.metrics, style.name)) continue;
-    report::Table& table =
-        section.tables.emplace_back(MetricTable(style, experiment.dataset.classes, rows));
-    const bool distance = style.name == "afd" || style.name == "afd_squared";
-    if (flags.printed && distance) AddPrintedRows(report::PaperAfdSbu(), &table);
-    if (flags.printed && style.name == report::kFrechet) {
-      AddPrintedRows(report::PaperFidSbu(), &table);
-    }
+    section.tables.push_back(MetricTable(style, experiment.dataset.classes, rows));
   }
   return section;
 }
@@ -193,7 +185,7 @@ absl::StatusOr<report::Section> RunSamples(const ExperimentFlags& flags) {
   DUET_TRY(const Experiment experiment, OpenExperiment(flags));
   DUET_TRY(const Scorer scorer, Scorer::Create(experiment, true));
   std::vector<report::MethodFigures> rows = {
-      scorer.Score("captured", {CapturedAnswers(experiment)})};
+      scorer.Score(report::kCaptured, {CapturedAnswers(experiment)})};
   std::vector<FoldAnswers> others(static_cast<size_t>(flags.asked.samples));
   for (size_t n = 0; n < others.size(); ++n) {
     for (const Fold& fold : experiment.folds) {
@@ -234,7 +226,6 @@ Measure AddFoldsCommand(CLI::App* command) {
   std::vector<std::string> metrics;
   for (const report::MetricStyle& style : report::MetricStyles()) metrics.push_back(style.name);
   AddNames("--metrics", &flags->metrics, metrics, "tables to print", command);
-  command->add_flag("--printed", flags->printed, "add the rows that the paper prints");
   return [flags] { return RunFolds(*flags); };
 }
 

@@ -275,8 +275,6 @@ absl::StatusOr<std::vector<double>> Accuracies(const dataset::Dataset& dataset,
   return accuracies;
 }
 
-double Deviation(const std::vector<double>& values) { return base::Summarise(values).deviation; }
-
 std::vector<report::Table> Tables(const std::vector<std::string>& classes,
                                   const std::vector<Row>& rows) {
   std::vector<report::Table> tables = {
@@ -296,9 +294,8 @@ std::vector<report::Table> Tables(const std::vector<std::string>& classes,
       for (size_t c = 0; c < gains[t].size(); ++c) gains[t][c] -= rows.front().trials[t][c];
     }
     tables[1].rows.push_back({row.name, report::ColumnMeans(gains)});
-    tables[1].rows.push_back({row.name + ", deviation", report::OverColumns(gains, Deviation)});
+    tables[1].rows.push_back({row.name + ", deviation", report::ColumnDeviations(gains)});
   }
-  AddPrintedRows(report::PaperAugmentation(), &tables[0]);
   return tables;
 }
 

@@ -28,7 +28,7 @@ constexpr const char* kBestNames[] = {"none", "lowest", "highest"};  // as in Be
 ordered_json ToJson(const Table& table) {
   ordered_json rows = ordered_json::array();
   for (const TableRow& row : table.rows) {
-    rows.push_back({{"name", row.name}, {"printed", row.printed}, {"values", row.values}});
+    rows.push_back({{"name", row.name}, {"values", row.values}});
   }
   return {{"title", table.title},       {"columns", table.columns},
           {"rows", std::move(rows)},    {"notes", table.notes},
@@ -53,20 +53,6 @@ ordered_json ToJson(const Section& section) {
           {"settings", std::move(settings)},
           {"command", section.command},
           {"date", absl::FormatTime("%Y-%m-%d", absl::Now(), absl::UTCTimeZone())}};
-}
-
-void AddNotes(const MetricStyle& style, Table* table) {
-  if (style.name == kFrechet || style.name == kDiversity) {
-    table->notes.push_back(
-        "Per fold and class, averaged over the folds with two motions of the class or more. Each "
-        "fold's judge has learnt from captured followers of the fold's training people alone.");
-  } else if (style.name == kAccuracy) {
-    table->notes.push_back(
-        "The share of test motions that the fold's judge, trained on captured followers of the "
-        "fold's training people alone, takes for the class asked for.");
-  } else if (style.of_captured) {
-    table->notes.push_back("Captured motion is not perfect: compare with its row, not with zero.");
-  }
 }
 
 // Columns of the summary: a figure and its heading.
@@ -106,13 +92,15 @@ double MeanFigure(const Column& column, const MethodFigures& method,
   return base::Mean(of_classes);
 }
 
-// A table of figures that the paper prints for SBU.
-Table Printed(const char* title, std::vector<TableRow> rows, const char* note) {
-  for (TableRow& row : rows) row.printed = true;
-  return {title,
-          {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"},
-          std::move(rows),
-          {note}};
+template <typename Figure>
+std::vector<double> OverColumns(const std::vector<std::vector<double>>& rows, Figure figure) {
+  std::vector<double> figures;
+  for (size_t c = 0; !rows.empty() && c < rows.front().size(); ++c) {
+    std::vector<double> values;
+    for (const std::vector<double>& row : rows) values.push_back(row[c]);
+    figures.push_back(figure(values));
+  }
+  return figures;
 }
 
 }  // namespace
@@ -121,9 +109,8 @@ std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
   return OverColumns(rows, base::Mean);
 }
 
-void AddMeanColumn(Table* table) {
-  table->columns.push_back("mean");
-  for (TableRow& row : table->rows) row.values.push_back(base::Summarise(row.values).mean);
+std::vector<double> ColumnDeviations(const std::vector<std::vector<double>>& rows) {
+  return OverColumns(rows, [](const auto& values) { return base::Summarise(values).deviation; });
 }
 
 std::string ToPlainText(const Table& table) {
@@ -158,6 +145,10 @@ absl::Status WriteSection(const Section& section, const std::filesystem::path& f
 }
 
 const std::vector<MetricStyle>& MetricStyles() {
+  const std::string beside = "Captured motion is not perfect: compare with its row, not with zero.";
+  const std::string within =
+      "Per fold and class, averaged over the folds with two motions of the class or more. Each "
+      "fold's judge has learnt from captured followers of the fold's training people alone.";
   constexpr Best kLow = Best::kLowest, kHigh = Best::kHighest, kNone = Best::kNone;
   static const auto& styles = *new std::vector<MetricStyle>{
       {"afd", "Average frame distance (Eq. 6), SBU's raw unit", 3, kLow},
@@ -165,58 +156,47 @@ const std::vector<MetricStyle>& MetricStyles() {
       {"afd_m", "Average frame distance, metres", 3, kLow},
       {"root_aligned_afd", "Average frame distance about the own root, SBU's raw unit", 3, kLow},
       {"velocity_error", "Velocity error, m/s", 3, kLow},
-      {"bone_length_drift", "Drift of bone lengths, share of the length", 4, kNone, true},
-      {"jitter", "Jitter, m/s^3", 1, kNone, true},
-      {"skating_ratio", "Steps on the floor faster than 0.5 m/s, share", 3, kNone, true},
-      {"foot_slide_cm", "Feet on the floor slide, centimetres a frame", 2, kNone, true},
+      {"bone_length_drift", "Drift of bone lengths, share of the length", 4, kNone, beside},
+      {"jitter", "Jitter, m/s^3", 1, kNone, beside},
+      {"skating_ratio", "Steps on the floor faster than 0.5 m/s, share", 3, kNone, beside},
+      {"foot_slide_cm", "Feet on the floor slide, centimetres a frame", 2, kNone, beside},
       {"penetration_frequency", "Frames in which the bodies touch or overlap, share", 3, kNone,
+       beside},
+      {"penetration_depth_m", "Depth of overlap in those frames, metres", 3, kNone, beside},
+      {"joint_speed", "Mean speed of the joints without noise, m/s", 3, kNone, beside},
+      {"range_of_motion_m", "Range of motion without noise, metres", 3, kNone, beside},
+      {"lean_degrees", "Lean from hips to neck, degrees", 1, kNone, beside},
+      {"facing_degrees", "Turned away from the leader, degrees", 1, kNone, beside},
+      {"root_distance_m", "Distance to the leader, metres", 3, kNone, beside},
+      {"touch", "Frames in which a hand or foot touches the leader, share", 3, kNone, beside},
+      {kAccuracy, "Accuracy of the fold's judge", 3, kHigh,
+       "The share of test motions that the fold's judge, trained on captured followers of the "
+       "fold's training people alone, takes for the class asked for.",
        true},
-      {"penetration_depth_m", "Depth of overlap in those frames, metres", 3, kNone, true},
-      {"joint_speed", "Mean speed of the joints without noise, m/s", 3, kNone, true},
-      {"range_of_motion_m", "Range of motion without noise, metres", 3, kNone, true},
-      {"lean_degrees", "Lean from hips to neck, degrees", 1, kNone, true},
-      {"facing_degrees", "Turned away from the leader, degrees", 1, kNone, true},
-      {"root_distance_m", "Distance to the leader, metres", 3, kNone, true},
-      {"touch", "Frames in which a hand or foot touches the leader, share", 3, kNone, true},
-      {kAccuracy, "Accuracy of the fold's judge", 3, kHigh, true, true},
       {kFrechet, "Frechet distance to captured followers, features of the fold's judge", 2, kLow,
-       false, true},
+       within, true},
       {kDiversity, "Diversity: mean distance between motions of a class, the judge's features", 2,
-       kNone, true, true},
+       kNone, within, true},
   };
   return styles;
 }
 
 Table MetricTable(const MetricStyle& style, const std::vector<std::string>& classes,
                   const std::vector<MethodFigures>& methods) {
-  Table table{absl::StrCat(style.title, " (", style.name, ")"),
-              classes,
-              {},
-              {},
-              style.decimals,
-              style.best};
+  Table table{absl::StrCat(style.title, " (", style.name, ")"), classes};
+  table.decimals = style.decimals;
+  table.best = style.best;
   for (const MethodFigures& method : methods) {
     const auto figures = method.by_metric.find(style.name);
-    if (figures == method.by_metric.end() || (method.captured && !style.of_captured)) continue;
-    table.rows.push_back({method.name, figures->second, /*printed=*/false});
+    const bool of_captured = method.name == kCaptured;
+    if (figures == method.by_metric.end() || (of_captured && style.best == Best::kLowest)) continue;
+    std::vector<double>& values =
+        table.rows.emplace_back(TableRow{method.name, figures->second}).values;
+    values.push_back(base::Summarise(values).mean);
   }
-  AddMeanColumn(&table);
-  AddNotes(style, &table);
+  table.columns.push_back("mean");
+  if (!style.note.empty()) table.notes = {style.note};
   return table;
-}
-
-void AddPrintedRows(const Table& paper, Table* table) {
-  Table printed = paper;
-  AddMeanColumn(&printed);
-  if (printed.columns != table->columns) {
-    table->notes.push_back("The paper prints no figures for these classes.");
-    return;
-  }
-  for (TableRow& row : printed.rows) {
-    row.name = absl::StrCat("paper: ", row.name);
-    table->rows.push_back(std::move(row));
-  }
-  table->notes.insert(table->notes.end(), printed.notes.begin(), printed.notes.end());
 }
 
 Table SampleSummary(const std::vector<MethodFigures>& methods) {
@@ -237,43 +217,6 @@ Table SampleSummary(const std::vector<MethodFigures>& methods) {
       "answer, of the mean of all answers, of the best of all. Lean, facing: degrees. Slide: "
       "centimetres a frame. Depth: metres."};
   return table;
-}
-
-Table PaperAfdSbu() {
-  return Printed(
-      "Average frame distance on SBU, as printed (Tables 1 and 4)",
-      {{"NN", {.81, .51, .48, .61, .63, .56}},
-       {"HMM", {.92, .60, 1.41, .67, 3.84, .66}},
-       {"KZBH12", {.65, .45, .42, .48, .53, .48}},
-       {"HK14", {.92, .61, .54, .81, .74, .66}},
-       {"HFKB15", {.67, .48, .42, .47, .54, .52}},
-       {"MSHL22", {.53, .52, .44, .72, .45, .45}},
-       {"Goel et al. 2022", {.50, .43, .40, .42, .40, .32}},
-       {"w/o D", {.53, .45, .42, .49, .44, .38}},
-       {"w/o L_b", {.45, .42, .39, .40, .39, .32}},
-       {"w/o L_c", {.59, .45, .55, .46, .41, .40}},
-       {"w/o FC", {.55, .47, .46, .49, .41, .40}},
-       {"w/o multi-hot embedding", {.51, .48, .50, .66, .46, .45}}},
-      "Printed for seven subjects, six of whom are measured here. The formula printed (Eq. 6) is "
-      "the mean norm; the released code averages the squared norm and keeps the epoch that does "
-      "best on the test set. The figures lie between the two readings, so both are measured: afd "
-      "and afd_squared. The unit is SBU's raw one.");
-}
-
-Table PaperFidSbu() {
-  return Printed("Frechet distance on SBU, as printed (Table 2)",
-                 {{"MSHL22", {10.8, 20.8, 23.8, 29.5, 16.7, 11.2}},
-                  {"Goel et al. 2022", {9.3, 16.8, 15.1, 19.3, 11.7, 10.8}}},
-                 "The feature extractor is not known: only ratios between rows under one "
-                 "extractor can be compared.");
-}
-
-Table PaperAugmentation() {
-  return Printed("Accuracy of a classifier on SBU, as printed (Table 6)",
-                 {{"original", {.947, .941, .692, .538, .667, .889}},
-                  {"augmented", {.996, .877, .706, .641, .881, .911}}},
-                 "Half of the data trains, half tests; 25 + 25 synthetic sequences are added. The "
-                 "split and the number of runs are not printed.");
 }
 
 }  // namespace duet::evaluation::report

@@ -22,9 +22,7 @@ Table Example() {
   Table table;
   table.title = "Errors | all";
   table.columns = {"kick", "punch"};
-  table.rows = {{"ours", {0.504, 1.0 / 3}, false},
-                {"a, \"b\"", {0.5, std::nan("")}, false},
-                {"printed", {0.1, 0.2}, true}};
+  table.rows = {{"ours", {0.504, 1.0 / 3}}, {"a, \"b\"", {0.5, std::nan("")}}, {"hmm", {0.1, 0.2}}};
   table.notes = {"raw unit"};
   table.best = Best::kLowest;
   return table;
@@ -33,19 +31,11 @@ Table Example() {
 TEST(TableTest, PlainTextAligns) {
   EXPECT_EQ(ToPlainText(Example()),
             "Errors | all\n"
-            "         kick  punch\n"
-            "ours     0.50   0.33\n"
-            "a, \"b\"   0.50      -\n"
-            "printed  0.10   0.20\n"
+            "        kick  punch\n"
+            "ours    0.50   0.33\n"
+            "a, \"b\"  0.50      -\n"
+            "hmm     0.10   0.20\n"
             "  raw unit\n");
-}
-
-TEST(TableTest, MeanColumnIsMissingWhereAFigureIs) {
-  Table table = Example();
-  AddMeanColumn(&table);
-  EXPECT_EQ(table.columns.back(), "mean");
-  EXPECT_DOUBLE_EQ(table.rows[2].values.back(), 0.15);
-  EXPECT_TRUE(std::isnan(table.rows[1].values.back()));
 }
 
 TEST(SectionTest, JsonHasEveryFieldAndTheExactFigures) {
@@ -72,7 +62,6 @@ TEST(SectionTest, JsonHasEveryFieldAndTheExactFigures) {
   EXPECT_EQ(table["columns"], json({"kick", "punch"}));
   EXPECT_EQ(table["rows"][0]["values"][1], 1.0 / 3);
   EXPECT_TRUE(table["rows"][1]["values"][1].is_null());
-  EXPECT_EQ(table["rows"][2]["printed"], true);
   EXPECT_EQ(table["notes"][0], "raw unit");
   EXPECT_EQ(table["decimals"], 2);
   EXPECT_EQ(table["best"], "lowest");
@@ -103,10 +92,9 @@ TEST(MetricStyles, CoverEveryFigureOnce) {
 }
 
 TEST(MetricTable, OmitsMethodsWithoutTheFigure) {
-  const std::vector<MethodFigures> methods = {
-      {"a", false, {{"afd", {1, 3}}, {"jitter", {5, 7}}}},
-      {"b", false, {{"jitter", {6, 8}}}},
-      {"captured", true, {{"afd", {0, 0}}, {"jitter", {9, 9}}}}};
+  const std::vector<MethodFigures> methods = {{"a", {{"afd", {1, 3}}, {"jitter", {5, 7}}}},
+                                              {"b", {{"jitter", {6, 8}}}},
+                                              {"captured", {{"afd", {0, 0}}, {"jitter", {9, 9}}}}};
   const Table distance = MetricTable(Style("afd"), {"kick", "hug"}, methods);
   EXPECT_THAT(RowNames(distance), ElementsAre("a"));  // captured: 0 by definition
   EXPECT_THAT(distance.columns, ElementsAre("kick", "hug", "mean"));
@@ -115,34 +103,18 @@ TEST(MetricTable, OmitsMethodsWithoutTheFigure) {
               ElementsAre("a", "b", "captured"));
 }
 
-TEST(AddPrintedRows, SetsThePapersRowsApart) {
-  for (const Table& paper : {PaperAfdSbu(), PaperFidSbu(), PaperAugmentation()}) {
-    Table table =
-        MetricTable(Style("afd"), paper.columns, {{"ours", false, {{"afd", {1, 2, 3, 4, 5, 6}}}}});
-    AddPrintedRows(paper, &table);
-    ASSERT_EQ(table.rows.size(), 1 + paper.rows.size());
-    EXPECT_FALSE(table.rows[0].printed);
-    EXPECT_EQ(table.rows[1].name, "paper: " + paper.rows[0].name);
-    for (size_t i = 1; i < table.rows.size(); ++i) {
-      EXPECT_TRUE(table.rows[i].printed);
-      EXPECT_EQ(table.rows[i].values.size(), table.columns.size());
-    }
-    EXPECT_EQ(table.notes.back(), paper.notes.back());
-  }
-  EXPECT_EQ(PaperAfdSbu().rows[1].values[4], 3.84);
-}
-
-TEST(AddPrintedRows, OtherClassesGetANoteInsteadOfRows) {
-  Table table = MetricTable(Style(kFrechet), {"wave"}, {{"ours", false, {{kFrechet, {1}}}}});
-  AddPrintedRows(PaperFidSbu(), &table);
-  EXPECT_THAT(RowNames(table), ElementsAre("ours"));
-  EXPECT_THAT(table.notes.back(), HasSubstr("no figures for these classes"));
+TEST(MetricTable, MeanIsMissingWhereAFigureIs) {
+  const Table table =
+      MetricTable(Style("afd"), {"kick", "hug"},
+                  {{"a", {{"afd", {0.1, 0.2}}}}, {"b", {{"afd", {0.5, std::nan("")}}}}});
+  EXPECT_DOUBLE_EQ(table.rows[0].values.back(), 0.15);
+  EXPECT_TRUE(std::isnan(table.rows[1].values.back()));
 }
 
 TEST(SampleSummaryTest, HasRatiosToCaptured) {
-  const Table table = SampleSummary(
-      {{"captured", true, {{"joint_speed", {0.4, 0.2}}, {"range_of_motion_m", {1, 1}}}},
-       {"flow", false, {{"joint_speed", {0.1, 0.1}}, {kPooledFrechet, {8}}}}});
+  const Table table =
+      SampleSummary({{"captured", {{"joint_speed", {0.4, 0.2}}, {"range_of_motion_m", {1, 1}}}},
+                     {"flow", {{"joint_speed", {0.1, 0.1}}, {kPooledFrechet, {8}}}}});
   const auto cell = [&](size_t row, const std::string& column) {
     const auto at = std::find(table.columns.begin(), table.columns.end(), column);
     return table.rows[row].values[static_cast<size_t>(at - table.columns.begin())];
