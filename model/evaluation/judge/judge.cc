@@ -25,58 +25,48 @@ constexpr size_t kTestBatch = 64;
 
 using motion::StandardOrigin;
 
-// Writes the positions relative to the root, from column `first` on.
-void PutAboutRoot(const motion::Poses& poses, int root, int first, motion::Poses* input) {
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    for (int j = 0; j < poses.joint_count(); ++j) {
-      input->at(t, first + j) = poses.at(t, j) - poses.at(t, root);
-    }
-  }
+// Shapes: returns [frames, joints, 3].
+torch::Tensor ToTensor(const motion::Poses& poses) {
+  const int64_t frames = poses.frame_count();
+  return network::PadPoses({&poses}, frames)[0].view({frames, -1, 3});
 }
 
-// Writes central differences, one-sided at the ends, times the rate.
-void PutVelocity(const motion::Poses& poses, double rate, int first, motion::Poses* input) {
-  const int frames = poses.frame_count();
-  for (int t = 0; t < frames; ++t) {
-    const int before = std::max(t - 1, 0), after = std::min(t + 1, frames - 1);
-    const float a_second =
-        after == before ? 0 : static_cast<float>(rate) / static_cast<float>(after - before);
-    for (int j = 0; j < poses.joint_count(); ++j) {
-      input->at(t, first + j) = (poses.at(after, j) - poses.at(before, j)) * a_second;
-    }
-  }
+torch::Tensor AboutRoot(const torch::Tensor& poses, int root) {
+  return poses - poses.narrow(1, root, 1);
 }
 
-// Number of input vectors per joint.
-constexpr int InputParts(Sees sees) { return sees == Sees::kBoth ? 5 : 3; }
+// Central differences, one-sided at the ends, times the rate.
+torch::Tensor Velocity(const torch::Tensor& poses, double rate) {
+  const torch::Tensor frame = torch::arange(poses.size(0));
+  const torch::Tensor before = (frame - 1).clamp_min(0);
+  const torch::Tensor after = (frame + 1).clamp_max(poses.size(0) - 1);
+  const torch::Tensor frames = (after - before).clamp_min(1).to(poses.dtype());
+  return (poses.index_select(0, after) - poses.index_select(0, before)) *
+         (rate / frames).view({-1, 1, 1});
+}
 
-// What the classifier sees of a pair. Shapes: returns [frames, InputParts x joints], all joints of
-// the first part first.
-motion::Poses ClassifierInput(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
+// What the classifier sees of a pair: vectors of every joint, three from Sees::kFollower, five from
+// Sees::kBoth. Shapes: returns [frames, 3 x vectors x joints], all joints of the first vector
+// first.
+torch::Tensor ClassifierInput(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
                               Sees sees) {
   const motion::ClipPair& pair = sequence.pair;
-  const motion::Poses& follower = pair.follower.poses;
-  const motion::Poses& leader = pair.leader.poses;
   const double rate = pair.follower.frame_rate_hz;
   const auto every_frame = metrics::StandardOf(skeleton, sequence, StandardOrigin::kEveryFrame);
   const auto first_frame = metrics::StandardOf(skeleton, sequence, StandardOrigin::kFirstFrame);
-  const motion::Poses from_leader = every_frame.Apply(follower);
-  const int frames = from_leader.frame_count(), joints = skeleton.joint_count();
-  motion::Poses input(frames, InputParts(sees) * joints);
-  for (int t = 0; t < frames; ++t) {
-    std::copy(from_leader[t].begin(), from_leader[t].end(), input[t].begin());
+  const torch::Tensor from_leader = ToTensor(every_frame.Apply(pair.follower.poses));
+  const torch::Tensor follows = ToTensor(first_frame.Apply(pair.follower.poses));
+  std::vector<torch::Tensor> input = {from_leader, AboutRoot(from_leader, skeleton.root),
+                                      Velocity(follows, rate)};
+  if (sees == Sees::kBoth) {
+    const torch::Tensor leads = ToTensor(first_frame.Apply(pair.leader.poses));
+    input.insert(input.end(), {AboutRoot(leads, skeleton.root), Velocity(leads, rate)});
   }
-  PutAboutRoot(from_leader, skeleton.root, joints, &input);
-  PutVelocity(first_frame.Apply(follower), rate, 2 * joints, &input);
-  if (sees == Sees::kFollower) return input;
-  const motion::Poses leads = first_frame.Apply(leader);
-  PutAboutRoot(leads, skeleton.root, 3 * joints, &input);
-  PutVelocity(leads, rate, 4 * joints, &input);
-  return input;
+  return torch::cat(input, 1).flatten(1);
 }
 
 struct MotionBatch {
-  torch::Tensor motion;   // [N, T, 3 J]
+  torch::Tensor motion;   // [N, T, input], padded with zeros
   torch::Tensor lengths;  // [N] int64
   torch::Tensor classes;  // [N] int64
 };
@@ -94,17 +84,15 @@ std::vector<dataset::Sequence> WithFollowers(const dataset::Dataset& dataset,
 
 MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
                             const std::vector<dataset::Sequence>& sequences, Sees sees) {
-  std::vector<motion::Poses> inputs;
+  std::vector<torch::Tensor> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {
     inputs.push_back(ClassifierInput(dataset.skeleton, sequence, sees));
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
-  std::vector<const motion::Poses*> pointers;
-  for (const motion::Poses& input : inputs) pointers.push_back(&input);
-  return {network::PadPoses(pointers, *std::max_element(lengths.begin(), lengths.end())),
-          torch::tensor(lengths), torch::tensor(classes)};
+  return {torch::nn::utils::rnn::pad_sequence(inputs, /*batch_first=*/true), torch::tensor(lengths),
+          torch::tensor(classes)};
 }
 
 // `size` sequences in each batch but the last, in order.
@@ -165,7 +153,7 @@ network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
                                     const std::vector<dataset::Sequence>& sequences,
                                     const MotionClassifierOptions& options) {
   network::DiscriminatorOptions sizes;
-  sizes.input = 3 * InputParts(options.sees) * dataset.skeleton.joint_count();
+  sizes.input = ClassifierInput(dataset.skeleton, sequences.front(), options.sees).size(1);
   sizes.window_frames = dataset.LongestFrameCount();
   sizes.hidden = options.hidden;
   sizes.outputs = dataset.class_count();
@@ -253,7 +241,6 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
                                                    const dataset::Dataset& dataset,
                                                    const std::vector<int>& sequences,
                                                    bool labelled) {
-  constexpr size_t kBatch = 64;  // bounds memory
   const checkpoint::Manifest& manifest = checkpoint.manifest;
   if (!std::holds_alternative<checkpoint::PaperArchitecture>(manifest.architecture) ||
       manifest.model.classes != dataset.classes ||
@@ -268,9 +255,9 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
   DUET_RETURN_IF_ERROR(network::LoadParameters(checkpoint, generator));
   generator->eval();
   metrics::FeatureSet features;
-  for (size_t first = 0; first < sequences.size(); first += kBatch) {
+  for (size_t first = 0; first < sequences.size(); first += kTestBatch) {
     std::vector<training::Example> examples;
-    for (size_t i = first; i < std::min(sequences.size(), first + kBatch); ++i) {
+    for (size_t i = first; i < std::min(sequences.size(), first + kTestBatch); ++i) {
       examples.push_back(CapturedExample(dataset,
                                          dataset.sequences[static_cast<size_t>(sequences[i])],
                                          training::StartKnowledge::kNone));
