@@ -20,6 +20,8 @@ namespace {
 constexpr auto kEveryFrame = motion::StandardOrigin::kEveryFrame;
 constexpr auto kFirstFrame = motion::StandardOrigin::kFirstFrame;
 
+using FloatRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 struct Entry {
   const char* name;
   // Learns a model of each class; null: holds the follower's first pose.
@@ -159,8 +161,6 @@ constexpr int kStates = 3;
 constexpr int kIterations = 15;          // of EM
 constexpr double kPriorWeight = 50;      // weight of the pooled diagonal covariance, in samples
 constexpr double kLeastVariance = 1e-4;  // added to every variance
-// Pseudo-counts that keep every start and every transition possible.
-constexpr double kStartCount = 0.1, kTransitionCount = 0.1;
 
 // Every sequence cut into as many pieces of the same length as there are states.
 std::vector<Rows> EvenCut(const std::vector<Rows>& sequences) {
@@ -183,11 +183,6 @@ Eigen::MatrixXd CountJumps(const std::vector<Rows>& posteriors) {
     jumps += posterior.topRows(steps).transpose() * posterior.bottomRows(steps);
   }
   return jumps;
-}
-
-Eigen::MatrixXd RowsToProbabilities(const Eigen::MatrixXd& counts) {
-  const Eigen::MatrixXd padded = counts.array() + kTransitionCount;
-  return padded.array().colwise() / padded.rowwise().sum().array();
 }
 
 Eigen::RowVectorXd PooledVariance(const std::vector<Rows>& sequences) {
@@ -220,14 +215,14 @@ class Hmm {
     }
     std::vector<Rows> posteriors = EvenCut(sequences);
     Maximise(sequences, posteriors);
-    chain_.step = RowsToProbabilities(CountJumps(posteriors));
+    chain_.step = ConditionalProbabilities(CountJumps(posteriors));
     for (int iteration = 0; iteration < kIterations; ++iteration) {
       Eigen::MatrixXd jumps = Eigen::MatrixXd::Zero(kStates, kStates);
       for (size_t i = 0; i < sequences.size(); ++i) {
         posteriors[i] = SumOverPaths(chain_, LogDensities(sequences[i]), &jumps).states;
       }
       Maximise(sequences, posteriors);
-      chain_.step = RowsToProbabilities(jumps);
+      chain_.step = ConditionalProbabilities(jumps);
     }
   }
 
@@ -257,7 +252,7 @@ class Hmm {
   void Maximise(const std::vector<Rows>& sequences, const std::vector<Rows>& posteriors) {
     // A few samples do not determine a full covariance: the pooled diagonal one adds some.
     const Eigen::RowVectorXd prior = PooledVariance(sequences);
-    chain_.start = Eigen::RowVectorXd::Constant(kStates, kStartCount);
+    chain_.start = Eigen::RowVectorXd::Constant(kStates, kPseudoCount);
     for (const Rows& posterior : posteriors) chain_.start += posterior.row(0);
     chain_.start /= chain_.start.sum();
     for (int k = 0; k < kStates; ++k) {
@@ -370,25 +365,20 @@ absl::StatusOr<std::vector<metrics::ScoredMotion>> AnswerWithOtherPeople(
 }
 
 Rows ToRows(const motion::Poses& poses) {
-  Rows rows(poses.frame_count(), 3 * poses.joint_count());
-  double* out = rows.data();
-  for (const motion::Vec3& position : poses.all()) {
-    *out++ = position.x;
-    *out++ = position.y;
-    *out++ = position.z;
-  }
-  return rows;
+  return Eigen::Map<const FloatRows>(&poses.all().front().x, poses.frame_count(),
+                                     3 * poses.joint_count())
+      .cast<double>();
 }
 
 motion::Poses FromRows(const Rows& rows) {
   motion::Poses poses(static_cast<int>(rows.rows()), static_cast<int>(rows.cols() / 3));
-  const double* value = rows.data();
-  for (motion::Vec3& position : poses.all()) {
-    position = {static_cast<float>(value[0]), static_cast<float>(value[1]),
-                static_cast<float>(value[2])};
-    value += 3;
-  }
+  Eigen::Map<FloatRows>(&poses.all().front().x, rows.rows(), rows.cols()) = rows.cast<float>();
   return poses;
+}
+
+Eigen::MatrixXd ConditionalProbabilities(const Eigen::MatrixXd& counts) {
+  const Eigen::MatrixXd padded = counts.array() + kPseudoCount;
+  return padded.array().colwise() / padded.rowwise().sum().array();
 }
 
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {

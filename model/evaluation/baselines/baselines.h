@@ -109,6 +109,12 @@ Rows KMeans(const Rows& rows, int clusters, uint64_t seed);
 // The index of the centre nearest to each row.
 std::vector<int> NearestCentres(const Rows& centres, const Rows& rows);
 
+// Added to counts of events: unseen ones stay possible.
+inline constexpr double kPseudoCount = 0.1;
+
+// p(column | row) from counts.
+Eigen::MatrixXd ConditionalProbabilities(const Eigen::MatrixXd& counts);
+
 // Weights of the paths through a chain of states: a path s_0 .. s_{T-1} weighs
 //   start(s_0) exp(arrival_0(s_0)) prod_t step(s_{t-1}, s_t) exp(arrival_t(s_t)).
 // In a hidden Markov model start and step are probabilities and arrivals log densities of the

@@ -21,8 +21,6 @@ constexpr uint64_t kSeed = 1;
 constexpr int kPoseStates = 16;   // clusters of follower poses
 constexpr int kLeaderStates = 8;  // clusters of leader cues
 constexpr int kAscents = 30;      // gradient steps on the reward
-// Pseudo-counts: unseen events stay possible.
-constexpr double kCount = 0.1;
 // Gradient ascent on the mean log-likelihood of a frame: rate, and pull towards the initial
 // weights.
 constexpr double kAscentRate = 0.3;
@@ -31,12 +29,6 @@ constexpr double kPull = 0.01;
 // Weights of the features of arriving at a pose: how well it matches the leader's cluster, how
 // frequent the step is, how little the pose changes.
 using MdpWeights = Eigen::Vector3d;
-
-// log p(column | row) from counts.
-Eigen::MatrixXd LogConditional(const Eigen::MatrixXd& counts) {
-  const Eigen::MatrixXd padded = counts.array() + kCount;
-  return (padded.array().colwise() / padded.rowwise().sum().array()).log();
-}
 
 // A training sequence as cluster indices.
 struct Labelled {
@@ -68,9 +60,9 @@ struct Counts {
 struct Tables {
   Tables() = default;
   explicit Tables(const Counts& counts)
-      : leader_given_pose(LogConditional(counts.together).transpose()),
-        step(LogConditional(counts.steps)),
-        start(LogConditional(counts.starts)) {}
+      : leader_given_pose(ConditionalProbabilities(counts.together).array().log().transpose()),
+        step(ConditionalProbabilities(counts.steps).array().log()),
+        start(ConditionalProbabilities(counts.starts).array().log()) {}
 
   Rows leader_given_pose;    // [leader, pose]
   Eigen::MatrixXd step;      // [from, to]
