@@ -1,6 +1,5 @@
 #include "model/evaluation/metrics/scores.h"
 
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -19,38 +18,22 @@
 namespace duet::evaluation::metrics {
 namespace {
 
-// Uses the data set's own conversion, so that its constants are defined once.
-motion::Vec3 InUnit(MetricUnit unit, motion::Vec3 metres) {
-  if (unit == MetricUnit::kMetres) return metres;
-  return FromWorld({motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown}, metres);
-}
-
 double SquaredDistance(motion::Vec3 a, motion::Vec3 b) {
   const double x = double{a.x} - b.x, y = double{a.y} - b.y, z = double{a.z} - b.z;
   return x * x + y * y + z * z;
 }
 
 // The squared norm of x^_t - x_t over all coordinates of a frame.
-double FrameSquared(absl::Span<const motion::Vec3> predicted, absl::Span<const motion::Vec3> truth,
-                    MetricUnit unit) {
+double FrameSquared(absl::Span<const motion::Vec3> predicted,
+                    absl::Span<const motion::Vec3> truth) {
   double squared = 0;
-  for (size_t j = 0; j < truth.size(); ++j) {
-    squared += SquaredDistance(InUnit(unit, predicted[j]), InUnit(unit, truth[j]));
-  }
+  for (size_t j = 0; j < truth.size(); ++j) squared += SquaredDistance(predicted[j], truth[j]);
   return squared;
-}
-
-motion::Poses WithoutRoot(motion::Poses poses, int root) {
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    const motion::Vec3 at = poses.at(t, root);
-    for (motion::Vec3& position : poses[t]) position = position - at;
-  }
-  return poses;
 }
 
 // Between two followers of a sequence, in the world as captured, to which the raw unit refers.
 double Distance(const dataset::Sequence& sequence, const motion::Poses& a, const motion::Poses& b) {
-  return Afd(sequence.levelling.Invert(a), sequence.levelling.Invert(b), MetricUnit::kSbuRaw);
+  return Afd(ToRaw(sequence.levelling.Invert(a)), ToRaw(sequence.levelling.Invert(b)));
 }
 
 // The mean afd between any two answers to leader `i`.
@@ -78,7 +61,7 @@ double SquaredDistance(const std::vector<float>& a, const std::vector<float>& b)
 // A Gaussian as its mean and a factor R with covariance R^T R.
 struct Gaussian {
   Eigen::RowVectorXd mean;
-  Eigen::MatrixXd factor;  // [min(samples, features), features]
+  Eigen::MatrixXd factor;  // [samples, features]
 };
 
 Gaussian Fit(const FeatureSet& features) {
@@ -91,14 +74,7 @@ Gaussian Fit(const FeatureSet& features) {
             .cast<double>();
   }
   const Eigen::RowVectorXd mean = rows.colwise().mean();
-  rows.rowwise() -= mean;
-  rows /= std::sqrt(static_cast<double>(samples - 1));
-  if (samples > width) {
-    // rows = Q R: the same covariance with as many rows as features.
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
-    rows = Eigen::MatrixXd(qr.matrixQR().topRows(width).triangularView<Eigen::Upper>());
-  }
-  return {mean, std::move(rows)};
+  return {mean, (rows.rowwise() - mean) / std::sqrt(static_cast<double>(samples - 1))};
 }
 
 // Fewer motions have neither a covariance nor a pair.
@@ -126,24 +102,33 @@ double MeanFrechet(const std::vector<JudgedFold>& made, const std::vector<Judged
 
 }  // namespace
 
-double Afd(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit) {
+motion::Poses ToRaw(motion::Poses metres) {
+  // The data set's own conversion, so that its constants are defined once.
+  constexpr motion::Coordinates kRaw = {motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown};
+  for (motion::Vec3& position : metres.all()) position = FromWorld(kRaw, position);
+  return metres;
+}
+
+double Afd(const motion::Poses& predicted, const motion::Poses& truth) {
   double sum = 0;
   for (int t = 0; t < truth.frame_count(); ++t) {
-    sum += std::sqrt(FrameSquared(predicted[t], truth[t], unit));
+    sum += std::sqrt(FrameSquared(predicted[t], truth[t]));
   }
   return sum / truth.frame_count();
 }
 
 double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth) {
   double sum = 0;
-  for (int t = 0; t < truth.frame_count(); ++t) {
-    sum += FrameSquared(predicted[t], truth[t], MetricUnit::kSbuRaw);
-  }
+  for (int t = 0; t < truth.frame_count(); ++t) sum += FrameSquared(predicted[t], truth[t]);
   return sum / truth.frame_count();
 }
 
-double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root) {
-  return Afd(WithoutRoot(predicted, root), WithoutRoot(truth, root), MetricUnit::kSbuRaw);
+motion::Poses WithoutRoot(motion::Poses poses, int root) {
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const motion::Vec3 at = poses.at(t, root);
+    for (motion::Vec3& position : poses[t]) position = position - at;
+  }
+  return poses;
 }
 
 motion::Standardisation StandardOf(const motion::Skeleton& skeleton,
@@ -165,17 +150,18 @@ std::map<std::string, double> ScoreMotion(const dataset::Dataset& dataset,
   const motion::Poses& made = motion.follower;
   const double rate = sequence.pair.leader.frame_rate_hz;
   // The axes of the raw unit are those of the camera.
-  const motion::Poses made_raw = sequence.levelling.Invert(made);
-  const motion::Poses truth_raw = sequence.levelling.Invert(truth);
+  const motion::Poses made_seen = sequence.levelling.Invert(made);
+  const motion::Poses truth_seen = sequence.levelling.Invert(truth);
   const body::FootSlide slide = body::MeasureFootSlide(made, skeleton, rate);
   const motion::Poses calm = WithoutNoise(made, rate);
   const body::Penetration penetration =
       body::MeasurePenetration(leader, made, skeleton, dataset.parts);
   return {
-      {"afd", Afd(made_raw, truth_raw, MetricUnit::kSbuRaw)},
-      {"afd_squared", AfdSquared(made_raw, truth_raw)},
-      {"afd_m", Afd(made, truth, MetricUnit::kMetres)},
-      {"root_aligned_afd", RootAlignedAfd(made_raw, truth_raw, skeleton.root)},
+      {"afd", Afd(ToRaw(made_seen), ToRaw(truth_seen))},
+      {"afd_squared", AfdSquared(ToRaw(made_seen), ToRaw(truth_seen))},
+      {"afd_m", Afd(made, truth)},
+      {"root_aligned_afd", Afd(ToRaw(WithoutRoot(made_seen, skeleton.root)),
+                               ToRaw(WithoutRoot(truth_seen, skeleton.root)))},
       {"velocity_error", body::VelocityError(made, truth, rate)},
       {"bone_length_drift", body::BoneLengthDrift(made, skeleton)},
       {"jitter", body::Jitter(made, rate)},

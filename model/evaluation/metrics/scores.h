@@ -14,32 +14,27 @@ namespace duet::evaluation::metrics {
 
 // Distances between a synthesised follower and the captured one.
 //
-// Shapes: predicted and truth are alike, of one frame or more, in world metres, y up. Differing
-//         shapes are a programmer's error.
+// Shapes: predicted and truth are alike, of one frame or more, in one unit. Differing shapes are a
+//         programmer's error.
 //
 // In metres, every figure is invariant to a common translation and a common rotation about the
 // vertical. In the raw unit, whose axes have different scales, it is invariant only to translation:
 // pass motions in world coordinates, as captured, not levelled. The paper also rotates them, but
 // after the scaling, which changes no norm.
 
-// The unit that a displacement is measured in.
-enum class MetricUnit {
-  kMetres,
-  // The unit of the paper's figures: SBU's normalised one, 1/2.56, 1/1.92 and 1/1.28 a metre along
-  // x, y and z (Coordinates, kSbuNormalised).
-  kSbuRaw
-};
+// Positions in the unit of the paper's figures: SBU's normalised one, 1/2.56, 1/1.92 and 1/1.28 a
+// metre along x, y and z (Coordinates, kSbuNormalised).
+motion::Poses ToRaw(motion::Poses metres);
 
 // Average frame distance: (1/T) sum_t | x^_t - x_t |, the Euclidean norm over all 3 J coordinates.
 // Source: paper, Eq. 6.
-double Afd(const motion::Poses& predicted, const motion::Poses& truth, MetricUnit unit);
+double Afd(const motion::Poses& predicted, const motion::Poses& truth);
 
-// The same with the squared norm, as in the authors' released code. Square of the raw unit.
+// The same with the squared norm, as in the authors' released code.
 double AfdSquared(const motion::Poses& predicted, const motion::Poses& truth);
 
-// Afd in the raw unit after each follower's own root joint is subtracted in every frame: the pose
-// without the place.
-double RootAlignedAfd(const motion::Poses& predicted, const motion::Poses& truth, int root);
+// Without the place: each frame's root joint at the origin.
+motion::Poses WithoutRoot(motion::Poses poses, int root);
 
 // A follower for a sequence of the data set, synthesised or captured.
 struct ScoredMotion {

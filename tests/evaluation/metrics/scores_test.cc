@@ -20,10 +20,11 @@ const double kUnit = std::sqrt(15);
 TEST(AfdTest, RawUnitsScaleEachAxis) {
   const motion::Poses truth(1, {{0.3f, 0.4f, 0.5f}});
   const auto off_by = [&](motion::Vec3 d) { return motion::Poses(1, {truth.at(0, 0) + d}); };
-  EXPECT_NEAR(Afd(off_by({2.56f, 0, 0}), truth, MetricUnit::kSbuRaw), 1, 1e-6);
-  EXPECT_NEAR(Afd(off_by({0, 1.92f, 0}), truth, MetricUnit::kSbuRaw), 1, 1e-6);
-  EXPECT_NEAR(Afd(off_by({0, 0, 1.28f}), truth, MetricUnit::kSbuRaw), 1, 1e-6);
-  EXPECT_NEAR(AfdSquared(off_by({2.56f, 3.84f, 2.56f}), truth), 9, 1e-5);
+  const auto raw = ToRaw(truth);
+  EXPECT_NEAR(Afd(ToRaw(off_by({2.56f, 0, 0})), raw), 1, 1e-6);
+  EXPECT_NEAR(Afd(ToRaw(off_by({0, 1.92f, 0})), raw), 1, 1e-6);
+  EXPECT_NEAR(Afd(ToRaw(off_by({0, 0, 1.28f})), raw), 1, 1e-6);
+  EXPECT_NEAR(AfdSquared(ToRaw(off_by({2.56f, 3.84f, 2.56f})), raw), 9, 1e-5);
 }
 
 // The paper's pipeline: everything in the raw unit, the leader's torso subtracted, one yaw removed.
@@ -42,17 +43,17 @@ TEST(AfdTest, RawUnitsEqualThePapersPipeline) {
   motion::Poses truth_world(2, truth), predicted_world(2, predicted);
   for (motion::Vec3& p : truth_world.all()) p = ToWorld(raw_coordinates, p);
   for (motion::Vec3& p : predicted_world.all()) p = ToWorld(raw_coordinates, p);
-  EXPECT_NEAR(Afd(predicted_world, truth_world, MetricUnit::kSbuRaw), std::sqrt(squared), 1e-5);
+  EXPECT_NEAR(Afd(ToRaw(predicted_world), ToRaw(truth_world)), std::sqrt(squared), 1e-5);
 }
 
-TEST(RootAlignedAfdTest, IgnoresPlacementButNotPose) {
+TEST(WithoutRootTest, IgnoresPlacementButNotPose) {
   const motion::Poses truth(2, {{0, 0, 0}, {1, 1, 1}, {2, 0, 0}, {1, 2, 1}});
   motion::Poses moved = truth;
   for (motion::Vec3& p : moved[0]) p += motion::Vec3{5, 6, 7};
   for (motion::Vec3& p : moved[1]) p += motion::Vec3{-1, 0, 2};
-  EXPECT_NEAR(RootAlignedAfd(moved, truth, 0), 0, 1e-6);
-  moved.at(1, 1) += motion::Vec3{0, 1.92f * 3, 0};
-  EXPECT_NEAR(RootAlignedAfd(moved, truth, 0), 1.5, 1e-6);
+  EXPECT_NEAR(Afd(WithoutRoot(moved, 0), WithoutRoot(truth, 0)), 0, 1e-6);
+  moved.at(1, 1) += motion::Vec3{0, 3, 0};
+  EXPECT_NEAR(Afd(WithoutRoot(moved, 0), WithoutRoot(truth, 0)), 1.5, 1e-6);
 }
 
 TEST(ScoresTest, TheCapturedFollowerHasNoErrors) {
@@ -126,7 +127,7 @@ SampledMotions Moved(const dataset::Dataset& dataset, const std::vector<float>& 
 }
 
 double AfdOf(const dataset::Dataset& dataset, const ScoredMotion& motion) {
-  return Afd(motion.follower, SequenceOf(dataset, motion).pair.follower.poses, MetricUnit::kSbuRaw);
+  return Afd(ToRaw(motion.follower), ToRaw(SequenceOf(dataset, motion).pair.follower.poses));
 }
 
 TEST(SampledScoresTest, MeanAndBestAnswersAreOfEachLeader) {
