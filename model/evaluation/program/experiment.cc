@@ -1,6 +1,5 @@
 #include "model/evaluation/program/experiment.h"
 
-#include <chrono>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/base/status_macros.h"
 #include "model/base/text.h"
@@ -77,8 +75,7 @@ constexpr Command kCommands[] = {
      "What a viewer would notice in followers of any leaders", AddPlausibleCommand},
     {"sweep", "30_sweep", "Mix, match and avoid: what label weights do",
      "Effect of raising and lowering label weights", AddSweepCommand},
-    {"mixes", "32_mixes", "Mixes and reaction", "What mixes do, and how followers react",
-     AddMixesCommand},
+    {"mixes", "32_mixes", "Mixes", "What mixes do", AddMixesCommand},
     {"augmentation", "40_augmentation", "Synthetic motion as training material (Table 6)",
      "A classifier with and without synthetic training motion (Table 6)", AddAugmentationCommand},
     {"latent", "50_latent", "Latent space (Figures 6 and 7)",
@@ -347,14 +344,12 @@ absl::StatusOr<std::vector<judge::MotionClassifier>> TrainJudges(const dataset::
   options.members = 4;
   std::vector<judge::MotionClassifier> judges;
   for (const Fold& fold : folds) {
-    const auto start = std::chrono::steady_clock::now();
     DUET_TRY(judge::MotionClassifier judge,
              judge::MotionClassifier::Train(
                  dataset, metrics::CapturedMotions(dataset, fold.split.train), options));
     judges.push_back(std::move(judge));
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    std::cerr << absl::StrFormat("judge without %s: %d motions, %.1f s\n", fold.subject,
-                                 fold.split.train.size(), passed.count());
+    std::cerr << "judge without " << fold.subject << ": " << fold.split.train.size()
+              << " motions\n";
   }
   return judges;
 }

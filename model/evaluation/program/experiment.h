@@ -2,6 +2,7 @@
 #define DUET_MODEL_EVALUATION_PROGRAM_EXPERIMENT_H_
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -19,7 +20,6 @@
 #include "model/body/grade.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/dataset/dataset.h"
-#include "model/engine/label_track.h"
 #include "model/engine/synthesizer.h"
 #include "model/evaluation/judge/judge.h"
 #include "model/evaluation/metrics/scores.h"
@@ -175,7 +175,7 @@ absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesi
                                                           const Asked& asked);
 
 // Trains the judge of each fold, only on the captured followers of the fold's training sequences.
-// Prints the time to stderr. Errors: MotionClassifier::Train's.
+// Reports each on stderr. Errors: MotionClassifier::Train's.
 absl::StatusOr<std::vector<judge::MotionClassifier>> TrainJudges(const dataset::Dataset& dataset,
                                                                  const std::vector<Fold>& folds);
 
@@ -290,7 +290,7 @@ std::vector<SyntheticJob> PlanSyntheticSet(const dataset::Dataset& dataset,
 std::vector<double> MeasureMeeting(const motion::Skeleton& skeleton,
                                    const dataset::Sequence& sequence,
                                    const motion::Poses& follower);
-const std::vector<std::string>& MeetingFeatures();
+std::vector<std::string> MeetingFeatures();
 // Whether the skeleton has hips, two arms, a chest and a head.
 bool CanMeasureMeeting(const motion::Skeleton& skeleton);
 
@@ -327,8 +327,8 @@ double Deviation(const motion::Poses& mixed, const motion::Poses& own, const mot
 struct Kept {
   double own = NAN, other = NAN;
 
-  double weaker() const;
-  double both() const;  // 1: both are above half
+  double weaker() const { return std::isnan(own + other) ? NAN : std::min(own, other); }
+  double both() const { return std::isnan(weaker()) ? NAN : weaker() > 0.5; }  // are above half
 };
 // Shapes: folds [folds]; returns [answers].
 std::vector<Kept> MeasureKept(const std::vector<MixedAnswer>& answers,
@@ -341,52 +341,15 @@ using MixVariant = std::pair<std::string, std::vector<MixedAnswer>>;
 report::Table MixTable(const std::string& title, const std::vector<ClassGeometry>& folds,
                        const std::vector<MixVariant>& variants);
 
-// The judge's probabilities [classes] of the answer to a class, and of the same with another one at
-// -1, and by how much that changes the mean distance of the roots, metres.
-struct AvoidingAnswer {
-  int leader = 0;
-  int own = 0, avoided = 0;
-  std::vector<float> alone = {}, avoiding = {};
-  double moved = 0;
-};
-report::Table AvoidTable(const std::string& title, const std::vector<AvoidingAnswer>& answers);
-
-// How strongly, and when, a follower gives way to what a leader does.
-struct Reaction {
-  // How far head and torso go back about the leader's action, metres.
-  double head = 0, torso = 0;
-  double correlation = 0;  // of the velocity away from the leader with the captured follower's
+// A mean, and both ends of its 95 % interval.
+struct Estimate {
+  double mean, low, high;
 };
 
-// Captured and synthesised reactions to one leader's clip.
-struct ReactionPair {
-  int leader = 0;
-  int interaction_class = 0;
-  Reaction captured, made;
-  Reaction padded;  // to the same leader, who stands still for a second before and after
-};
-
-// Repeats the first and last frames of both people for a second. Returns the frames added in front.
-int PadSequence(dataset::Sequence* sequence);
-
-// Measures a follower, from 0.3 s before until 1 s after a hand or foot of the leader reaches
-// farthest towards the captured follower. Requires a body with a neck and arms.
-Reaction MeasureReaction(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
-                         const motion::Poses& follower);
-
-// The figures of all pairs with their intervals.
-report::Table ReactionTable(const std::string& title, const std::vector<ReactionPair>& pairs);
-
-// Estimates of mixes and reaction.
-
-// A figure of some of the rows of a measurement, which may be repeated. NaN: it has no value.
-using Statistic = std::function<double(const std::vector<size_t>& rows)>;
-
-// Adds to `row` the statistic of all rows, and both ends of its 95 % interval by the bootstrap:
-// leaders are drawn with all their rows, because the answers to one leader are alike. The same
-// input gives the same result. Shapes: leaders [rows].
-void AddEstimate(const std::vector<int>& leaders, const Statistic& statistic,
-                 report::TableRow* row);
+// Estimates the mean by the bootstrap: leaders are drawn with all their values, because the answers
+// to one leader are alike. NaN: no value. The same input gives the same result. Shapes: both
+// [answers].
+Estimate EstimateMean(const std::vector<int>& leaders, const std::vector<double>& values);
 
 }  // namespace duet::evaluation::program
 

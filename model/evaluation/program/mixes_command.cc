@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +15,6 @@
 #include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/body/grade.h"
-#include "model/body/posture.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/motion/filter.h"
 
@@ -39,21 +37,6 @@ Vec3 AwayFromLeader(const dataset::Sequence& sequence, int root) {
   return length > 0 ? away / length : Vec3{1, 0, 0};
 }
 
-// A table with a figure and both ends of its interval for each variant.
-report::Table EstimateTable(const std::string& title, const std::vector<std::string>& variants) {
-  report::Table table{title};
-  for (const std::string& variant : variants) {
-    table.columns.insert(table.columns.end(), {variant, "low", "high"});
-  }
-  table.decimals = 3;
-  return table;
-}
-
-// NaN for a denominator of 0.
-double Ratio(double numerator, double denominator) {
-  return denominator == 0 ? NAN : numerator / denominator;
-}
-
 double Largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
@@ -74,10 +57,40 @@ double LargestRise(const std::vector<double>& values) {
 // What changes over a clip, a value a frame. Metres; lean in degrees, backwards positive.
 struct Series {
   std::vector<double> apart, hands_around, hand_around, hands_meet;  // distances from the leader
-  std::vector<double> more_reach, less_reach;  // of the hands towards the leader, past the root
-  std::vector<double> head, root, hips;        // away from the leader
+  std::vector<double> more_reach, less_reach,
+      uneven_reach;                      // of hands to the leader, past the root
+  std::vector<double> head, root, hips;  // away from the leader
   std::vector<double> lean, raised_hand;
 };
+
+// The mean lean of the first frames.
+double Upright(const std::vector<double>& lean) {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(kUprightFrames, lean.size()));
+  return base::Mean({lean.begin(), lean.begin() + count});
+}
+
+struct MeetingFeature {
+  const char* name;
+  double (*of)(const Series& series);
+};
+
+constexpr MeetingFeature kMeetingFeatures[] = {
+    {"near", [](auto& s) { return -Smallest(s.apart); }},
+    {"hands around", [](auto& s) { return -Smallest(s.hands_around); }},
+    {"a hand around", [](auto& s) { return -Smallest(s.hand_around); }},
+    {"hands meet", [](auto& s) { return -Smallest(s.hands_meet); }},
+    {"one hand out", [](auto& s) { return Largest(s.uneven_reach); }},
+    {"hand out", [](auto& s) { return Largest(s.more_reach); }},
+    {"hands out", [](auto& s) { return Largest(s.less_reach); }},
+    {"head recoils", [](auto& s) { return LargestRise(s.head); }},
+    {"root recoils", [](auto& s) { return LargestRise(s.root); }},
+    {"hips recoil", [](auto& s) { return LargestRise(s.hips); }},
+    {"head retreats", [](auto& s) { return Largest(s.head) - s.head.front(); }},
+    {"root retreats", [](auto& s) { return Largest(s.root) - s.root.front(); }},
+    {"root approaches", [](auto& s) { return s.root.front() - Smallest(s.root); }},
+    {"leans back", [](auto& s) { return Largest(s.lean) - Upright(s.lean); }},
+    {"leans forward", [](auto& s) { return -Smallest(s.lean); }},
+    {"hand raised", [](auto& s) { return Largest(s.raised_hand); }}};
 
 // A feature counts for a model whose single answers differ by at least this share of the captures'
 // difference; below it, what a mix keeps is a ratio of noise.
@@ -85,40 +98,25 @@ constexpr double kLeastDifference = 0.3;
 // What a mix keeps of one feature is limited to this range: no single feature decides the mean.
 constexpr double kLeastKept = -0.5, kMostKept = 1.5;
 
-int Likeliest(const std::vector<float>& probabilities) {
-  return static_cast<int>(std::max_element(probabilities.begin(), probabilities.end()) -
-                          probabilities.begin());
-}
-
-double DistanceOf(const motion::Poses& a, const motion::Poses& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.all().size(); ++i) {
-    const motion::Vec3 apart = a.all()[i] - b.all()[i];
-    sum += double{Dot(apart, apart)};
-  }
-  return std::sqrt(sum);
+double IsLikeliest(const std::vector<float>& of, int label) {
+  return std::max_element(of.begin(), of.end()) - of.begin() == label ? 1 : 0;
 }
 
 // By how much single answers to the class of lower index exceed those to the other one, mean over
 // all answers to the pair. Shapes: by pair, [features].
 std::map<std::pair<int, int>, std::vector<double>> SingleDifferences(
     const std::vector<MixedAnswer>& answers) {
-  std::map<std::pair<int, int>, std::vector<double>> sums;
-  std::map<std::pair<int, int>, int> counts;
+  std::map<std::pair<int, int>, std::vector<std::vector<double>>> by_pair;
   for (const MixedAnswer& answer : answers) {
-    const std::pair<int, int> pair = std::minmax(answer.own, answer.other);
+    std::vector<double>& row = by_pair[std::minmax(answer.own, answer.other)].emplace_back();
     const double sign = answer.own < answer.other ? 1 : -1;
-    std::vector<double>& sum = sums[pair];
-    sum.resize(answer.mixed.size());
-    for (size_t f = 0; f < sum.size(); ++f) {
-      sum[f] += sign * (answer.own_alone[f] - answer.other_alone[f]);
+    for (size_t f = 0; f < answer.mixed.size(); ++f) {
+      row.push_back(sign * (answer.own_alone[f] - answer.other_alone[f]));
     }
-    ++counts[pair];
   }
-  for (auto& [pair, sum] : sums) {
-    for (double& value : sum) value /= counts[pair];
-  }
-  return sums;
+  std::map<std::pair<int, int>, std::vector<double>> means;
+  for (const auto& [pair, rows] : by_pair) means[pair] = report::ColumnMeans(rows);
+  return means;
 }
 
 // What remains of one class's own geometry.
@@ -137,26 +135,6 @@ double KeptOf(const MixedAnswer& answer, bool is_own, const ClassGeometry& captu
   return base::Mean(shares);
 }
 
-// A figure of one answer.
-template <typename Answer>
-using Figure = std::function<double(const Answer& answer)>;
-
-// The mean of a figure of some answers, which may be repeated.
-template <typename Answer>
-double MeanOver(const std::vector<Answer>& answers, const std::vector<size_t>& rows,
-                const Figure<Answer>& figure) {
-  std::vector<double> values;
-  for (const size_t row : rows) values.push_back(figure(answers[row]));
-  return base::Mean(values);
-}
-
-template <typename Answer>
-std::vector<int> LeadersOf(const std::vector<Answer>& answers) {
-  std::vector<int> leaders;
-  for (const Answer& answer : answers) leaders.push_back(answer.leader);
-  return leaders;
-}
-
 struct MixFigure {
   const char* name;
   double (*of)(const MixedAnswer& answer, const Kept& kept);
@@ -168,81 +146,16 @@ constexpr MixFigure kMixFigures[] = {
     {"own ingredient", [](auto&, const Kept& kept) { return kept.own; }},
     {"other ingredient", [](auto&, const Kept& kept) { return kept.other; }},
     {"third class",
-     [](const MixedAnswer& answer, auto&) {
-       const int likeliest = Likeliest(answer.probabilities);
-       return likeliest != answer.own && likeliest != answer.other ? 1.0 : 0.0;
+     [](auto& a, auto&) {
+       return 1 - IsLikeliest(a.probabilities, a.own) - IsLikeliest(a.probabilities, a.other);
      }},
     {"deviation from average", [](auto& a, auto&) { return a.deviation; }},
     {"twisted", [](auto& a, auto&) { return a.grade.twisted; }},
     {"overlap", [](auto& a, auto&) { return a.grade.overlapping; }},
     {"skate", [](auto& a, auto&) { return a.grade.skating; }}};
 
-constexpr double kPaddingSeconds = 1;
-// The time about the leader's action in which a follower goes back.
-constexpr double kBeforeActionSeconds = 0.3, kAfterActionSeconds = 1;
-// A series with a smaller deviation has no correlation with another.
-constexpr double kConstant = 1e-9;
-
-// Pearson's correlation; 0 if either side is constant. Shapes: both [samples].
-double Correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const double mean_a = base::Mean(a), mean_b = base::Mean(b);
-  double product = 0, square_a = 0, square_b = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    product += (a[i] - mean_a) * (b[i] - mean_b);
-    square_a += std::pow(a[i] - mean_a, 2);
-    square_b += std::pow(b[i] - mean_b, 2);
-  }
-  const double scale = std::sqrt(square_a * square_b);
-  return scale > kConstant ? product / scale : 0;
-}
-
-std::vector<double> Positions(const Poses& poses, int joint, Vec3 away) {
-  std::vector<double> along;
-  for (int t = 0; t < poses.frame_count(); ++t) along.push_back(Dot(poses.at(t, joint), away));
-  return along;
-}
-
-// The change of the head's and the root's mean position away from the leader in every frame.
-std::vector<double> VelocityAway(const Poses& poses, int head, int root, Vec3 away) {
-  const std::vector<double> heads = Positions(poses, head, away);
-  const std::vector<double> roots = Positions(poses, root, away);
-  std::vector<double> velocity(heads.size());
-  for (size_t t = 1; t < velocity.size(); ++t) {
-    velocity[t] = (heads[t] + roots[t] - heads[t - 1] - roots[t - 1]) / 2;
-  }
-  return velocity;
-}
-
-// The frame in which a hand or foot of the leader reaches farthest towards the follower.
-int ActionFrame(const motion::Skeleton& skeleton, const body::Body& body, const Poses& leader,
-                Vec3 away) {
-  int frame = 0;
-  float farthest = -INFINITY;
-  for (int t = 0; t < leader.frame_count(); ++t) {
-    for (const auto* limbs : {&body.arms, &body.legs}) {
-      for (const body::Limb& limb : *limbs) {
-        const float reach = Dot(leader.at(t, limb.end) - leader.at(t, skeleton.root), away);
-        if (reach <= farthest) continue;
-        farthest = reach;
-        frame = t;
-      }
-    }
-  }
-  return frame;
-}
-
-// Repeats the first and last frames.
-void Pad(int frames, motion::Clip* clip) {
-  Poses padded(0, clip->joint_count());
-  for (int t = 0; t < frames; ++t) padded.Append(clip->poses[0]);
-  padded.Append(clip->poses.all());
-  for (int t = 0; t < frames; ++t) padded.Append(clip->poses[clip->frame_count() - 1]);
-  clip->poses = std::move(padded);
-}
-
 struct MixesFlags : ExperimentFlags {
-  std::vector<std::string> reaction_classes;  // empty: all
-  int leaders = 0;                            // of each class in a fold; 0: all
+  int leaders = 0;  // of each class in a fold; 0: all
 };
 
 // What judges mixes of a data set. Shapes: [folds].
@@ -275,22 +188,15 @@ body::Grade GradeOf(const motion::Skeleton& skeleton, const motion::Clip& leader
   return sum.Get();
 }
 
-struct Measured {
-  std::vector<MixVariant> mixes = {{"one label", {}}, {"0.5 / 0.5", {}}, {"1 / 1", {}}};
-  std::vector<AvoidingAnswer> avoiding;
-  std::vector<ReactionPair> reactions;
-};
-
-// Answers a leader in its own class, in another one, in two mixes of both, and in its own class
-// with the other one at -1.
+// Answers a leader in its own class, in two mixes with another one, and in that one.
 absl::Status MixWith(const dataset::Dataset& dataset, const Meters& meters, int fold,
                      const engine::Synthesizer& model, const Asked& asked, int leader, int other,
-                     int sample, Measured* measured) {
+                     int sample, std::vector<MixVariant>* mixes) {
   const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(leader)];
   const int own = sequence.interaction_class;
   std::vector<LabelledLeader> leaders;
   for (const auto& [own_weight, other_weight] :
-       {std::pair(1.0f, 0.0f), {0.5f, 0.5f}, {1.0f, 1.0f}, {0.0f, 1.0f}, {1.0f, -1.0f}}) {
+       {std::pair(1.0f, 0.0f), {0.5f, 0.5f}, {1.0f, 1.0f}, {0.0f, 1.0f}}) {
     std::vector<float> weights(dataset.classes.size());
     weights[static_cast<size_t>(own)] = own_weight;
     weights[static_cast<size_t>(other)] = other_weight;
@@ -300,8 +206,8 @@ absl::Status MixWith(const dataset::Dataset& dataset, const Meters& meters, int 
   std::vector<metrics::ScoredMotion> motions;
   for (const Poses& answer : answers) motions.push_back({leader, answer});
   const auto judged = meters.judges[static_cast<size_t>(fold)].Judge(dataset, motions);
-  const Poses &own_alone = answers[0], &other_alone = answers[3], &avoiding = answers[4];
-  for (size_t v = 0; v < measured->mixes.size(); ++v) {
+  const Poses &own_alone = answers[0], &other_alone = answers[3];
+  for (size_t v = 0; v < mixes->size(); ++v) {
     MixedAnswer answer{leader, fold, own, other};
     answer.mixed = MeasureMeeting(dataset.skeleton, sequence, answers[v]);
     answer.own_alone = MeasureMeeting(dataset.skeleton, sequence, own_alone);
@@ -309,45 +215,7 @@ absl::Status MixWith(const dataset::Dataset& dataset, const Meters& meters, int 
     answer.probabilities = judged.probabilities[v];
     answer.deviation = Deviation(answers[v], own_alone, other_alone);
     answer.grade = GradeOf(dataset.skeleton, sequence.pair.leader, answers[v]);
-    measured->mixes[v].second.push_back(std::move(answer));
-  }
-  const auto distance = [&](const Poses& follower) {
-    return body::RootDistance(sequence.pair.leader.poses, follower, dataset.skeleton);
-  };
-  measured->avoiding.push_back({leader, own, other, judged.probabilities[0],
-                                judged.probabilities[4], distance(avoiding) - distance(own_alone)});
-  return absl::OkStatus();
-}
-
-// Answers leaders in their own classes, as captured and padded.
-absl::Status React(const dataset::Dataset& dataset, const engine::Synthesizer& model,
-                   const Asked& asked, const std::vector<int>& leaders, int sample,
-                   std::vector<ReactionPair>* reactions) {
-  std::vector<dataset::Sequence> sequences;  // each as captured, then padded
-  std::vector<int> padding;
-  for (const int leader : leaders) {
-    const dataset::Sequence& captured = dataset.sequences[static_cast<size_t>(leader)];
-    sequences.insert(sequences.end(), 2, captured);
-    padding.push_back(PadSequence(&sequences.back()));
-  }
-  std::vector<LabelledLeader> labelled;
-  for (size_t i = 0; i < sequences.size(); ++i) {
-    labelled.push_back({&sequences[i],
-                        OneClass(dataset.class_count(), sequences[i].interaction_class),
-                        SeedOf(asked, dataset, leaders[i / 2], sample)});
-  }
-  DUET_TRY(const std::vector<Poses> answers, SynthesizeSequences(model, labelled, asked));
-  for (size_t i = 0; i < leaders.size(); ++i) {
-    const dataset::Sequence& sequence = sequences[2 * i];
-    const auto measure = [&](const Poses& follower) {
-      return MeasureReaction(dataset.skeleton, sequence, follower);
-    };
-    Poses padded = answers[2 * i + 1];
-    padded.DropFront(padding[i]);
-    padded.Resize(sequence.pair.leader.frame_count());
-    reactions->push_back({leaders[i], sequence.interaction_class,
-                          measure(sequence.pair.follower.poses), measure(answers[2 * i]),
-                          measure(padded)});
+    (*mixes)[v].second.push_back(std::move(answer));
   }
   return absl::OkStatus();
 }
@@ -374,53 +242,38 @@ absl::Status AddTables(const Experiment& experiment, const MixesFlags& flags, co
   const dataset::Dataset& dataset = experiment.dataset;
   const std::string& name = model.name;
   const Asked& asked = model.asked;
-  Measured measured;
-  std::vector<bool> contact;  // of each class
+  std::vector<MixVariant> mixes = {{"one label", {}}, {"0.5 / 0.5", {}}, {"1 / 1", {}}};
+  SharedSynthesizer synthesizer;
   for (size_t f = 0; f < experiment.folds.size(); ++f) {
     const Fold& fold = experiment.folds[f];
-    DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
+    DUET_TRY(synthesizer, model.load(fold.subject));
     DUET_RETURN_IF_ERROR(CheckModelTakes(synthesizer->description(), dataset, asked.start));
     const std::vector<int> leaders = ChooseLeaders(dataset, fold.split.test, flags.leaders);
     const int samples = synthesizer->description().samples ? asked.samples : 1;
-    contact.clear();
-    for (int c = 0; c < dataset.class_count(); ++c) {
-      contact.push_back(synthesizer->description().IsContact(c));
-    }
-    std::vector<int> reacting;
-    for (const int leader : leaders) {
-      const std::string& of_leader =
-          dataset.classes[static_cast<size_t>(metrics::ClassesOf(dataset, {leader})[0])];
-      const auto& some = flags.reaction_classes;
-      if (some.empty() || std::count(some.begin(), some.end(), of_leader) > 0) {
-        reacting.push_back(leader);
-      }
-    }
     for (int n = 0; n < samples; ++n) {
       for (const int leader : leaders) {
         const int own = dataset.sequences[static_cast<size_t>(leader)].interaction_class;
         for (int other = 0; other < dataset.class_count(); ++other) {
           if (other == own) continue;
           DUET_RETURN_IF_ERROR(MixWith(dataset, meters, static_cast<int>(f), *synthesizer, asked,
-                                       leader, other, n, &measured));
+                                       leader, other, n, &mixes));
         }
       }
-      DUET_RETURN_IF_ERROR(React(dataset, *synthesizer, asked, reacting, n, &measured.reactions));
     }
     std::cerr << absl::StrCat(name, " without ", fold.subject, ": ", leaders.size(), " leaders\n");
   }
-  std::vector<MixVariant> two_kinds = measured.mixes;
+  const engine::ModelDescription& description = synthesizer->description();
+  std::vector<MixVariant> two_kinds = mixes;
   for (auto& [variant, answers] : two_kinds) {
     const auto one_kind = [&](const MixedAnswer& answer) {
-      return contact[static_cast<size_t>(answer.own)] == contact[static_cast<size_t>(answer.other)];
+      return description.IsContact(answer.own) == description.IsContact(answer.other);
     };
     answers.erase(std::remove_if(answers.begin(), answers.end(), one_kind), answers.end());
   }
   section->tables.insert(
       section->tables.end(),
-      {MixTable(name + ": mixes", meters.classes, measured.mixes),
-       MixTable(name + ": mixes of contact with other classes", meters.classes, two_kinds),
-       AvoidTable(name + ": negatives", measured.avoiding),
-       ReactionTable(name + ": reaction", measured.reactions)});
+      {MixTable(name + ": mixes", meters.classes, mixes),
+       MixTable(name + ": mixes of contact with other classes", meters.classes, two_kinds)});
   return absl::OkStatus();
 }
 
@@ -430,9 +283,8 @@ absl::StatusOr<report::Section> RunMixes(const MixesFlags& flags) {
   report::Section section = BeginExperiment(
       flags, experiment,
       "The leaders of every left-out subject, answered in mixes of their own class with each other "
-      "class, with each other class at -1, and in their own class with the leader held still "
-      "before and after the clip. All answers to one leader have one seed; every leader has its "
-      "own. +pose: the input includes the follower's first pose.");
+      "class. All answers to one leader have one seed; every leader has its own. +pose: the input "
+      "includes the follower's first pose.");
   for (const FoldModel& model : experiment.models) {
     DUET_RETURN_IF_ERROR(AddTables(experiment, flags, meters, model, &section));
   }
@@ -446,13 +298,10 @@ bool CanMeasureMeeting(const motion::Skeleton& skeleton) {
   return skeleton.hips && body.chest && body.neck && body.arms.size() == 2;
 }
 
-const std::vector<std::string>& MeetingFeatures() {
-  static const auto* const kFeatures = new std::vector<std::string>{
-      "near",          "hands around",  "a hand around",   "hands meet",   "one hand out",
-      "hand out",      "hands out",     "head recoils",    "root recoils", "hips recoil",
-      "head retreats", "root retreats", "root approaches", "leans back",   "leans forward",
-      "hand raised"};
-  return *kFeatures;
+std::vector<std::string> MeetingFeatures() {
+  std::vector<std::string> names;
+  for (const MeetingFeature& feature : kMeetingFeatures) names.emplace_back(feature.name);
+  return names;
 }
 
 std::vector<double> MeasureMeeting(const motion::Skeleton& skeleton,
@@ -484,6 +333,7 @@ std::vector<double> MeasureMeeting(const motion::Skeleton& skeleton,
     series.hands_meet.push_back(meet);
     series.more_reach.push_back(Largest(reach));
     series.less_reach.push_back(Smallest(reach));
+    series.uneven_reach.push_back(Largest(reach) - Smallest(reach));
     series.raised_hand.push_back(Largest(raised));
     const Vec3 hips =
         Lerp(poses.at(t, skeleton.hips->left), poses.at(t, skeleton.hips->right), 0.5f);
@@ -494,29 +344,9 @@ std::vector<double> MeasureMeeting(const motion::Skeleton& skeleton,
                           std::atan2(double{Dot(chest - root, away)},
                                      std::max(kLeastTrunkMetres, double{chest.y - root.y})));
   }
-  std::vector<double> uneven;
-  for (size_t t = 0; t < series.lean.size(); ++t) {
-    uneven.push_back(series.more_reach[t] - series.less_reach[t]);
-  }
-  const std::vector<double> upright(
-      series.lean.begin(), series.lean.begin() + static_cast<std::ptrdiff_t>(
-                                                     std::min(kUprightFrames, series.lean.size())));
-  return {-Smallest(series.apart),
-          -Smallest(series.hands_around),
-          -Smallest(series.hand_around),
-          -Smallest(series.hands_meet),
-          Largest(uneven),
-          Largest(series.more_reach),
-          Largest(series.less_reach),
-          LargestRise(series.head),
-          LargestRise(series.root),
-          LargestRise(series.hips),
-          Largest(series.head) - series.head.front(),
-          Largest(series.root) - series.root.front(),
-          series.root.front() - Smallest(series.root),
-          Largest(series.lean) - base::Mean(upright),
-          -Smallest(series.lean),
-          Largest(series.raised_hand)};
+  std::vector<double> features;
+  for (const MeetingFeature& feature : kMeetingFeatures) features.push_back(feature.of(series));
+  return features;
 }
 
 double ClassGeometry::Own(int of_class, int other, size_t feature) const {
@@ -528,45 +358,31 @@ double ClassGeometry::Own(int of_class, int other, size_t feature) const {
 }
 
 ClassGeometry MeasureClasses(const dataset::Dataset& dataset, const std::vector<int>& sequences) {
-  const size_t features = MeetingFeatures().size();
-  // Shapes: [classes][features][sequences of the class].
-  std::vector<std::vector<std::vector<double>>> values(dataset.classes.size(),
-                                                       std::vector<std::vector<double>>(features));
+  // Shapes: [classes][sequences of the class][features].
+  std::vector<std::vector<std::vector<double>>> values(dataset.classes.size());
   for (const int index : sequences) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    const std::vector<double> measured =
-        MeasureMeeting(dataset.skeleton, sequence, sequence.pair.follower.poses);
-    for (size_t f = 0; f < features; ++f) {
-      values[static_cast<size_t>(sequence.interaction_class)][f].push_back(measured[f]);
-    }
+    values[static_cast<size_t>(sequence.interaction_class)].push_back(
+        MeasureMeeting(dataset.skeleton, sequence, sequence.pair.follower.poses));
   }
   ClassGeometry classes;
   for (const auto& of_class : values) {
-    auto& means = classes.means.emplace_back();
-    auto& deviations = classes.deviations.emplace_back();
-    for (const std::vector<double>& of_feature : of_class) {
-      const base::MeanAndDeviation summary = base::Summarise(of_feature);
-      means.push_back(summary.mean);
-      deviations.push_back(summary.deviation);
-    }
+    classes.means.push_back(report::ColumnMeans(of_class));
+    classes.deviations.push_back(report::ColumnDeviations(of_class));
   }
   return classes;
 }
 
-double Deviation(const motion::Poses& mixed, const motion::Poses& own, const motion::Poses& other) {
-  motion::Poses average = own;
-  for (size_t i = 0; i < average.all().size(); ++i) {
-    average.all()[i] = Lerp(own.all()[i], other.all()[i], 0.5f);
+double Deviation(const Poses& mixed, const Poses& own, const Poses& other) {
+  double from_average = 0, apart = 0;
+  for (size_t i = 0; i < mixed.all().size(); ++i) {
+    const Vec3 between = own.all()[i] - other.all()[i];
+    const Vec3 away = mixed.all()[i] - Lerp(own.all()[i], other.all()[i], 0.5f);
+    from_average += double{Dot(away, away)};
+    apart += double{Dot(between, between)};
   }
-  const double scale = DistanceOf(own, other) / 2;
-  return Ratio(DistanceOf(mixed, average), scale);
+  return apart == 0 ? NAN : std::sqrt(from_average) / (std::sqrt(apart) / 2);
 }
-
-double Kept::weaker() const {
-  return std::isnan(own) || std::isnan(other) ? NAN : std::min(own, other);
-}
-
-double Kept::both() const { return std::isnan(weaker()) ? NAN : weaker() > 0.5 ? 1 : 0; }
 
 std::vector<Kept> MeasureKept(const std::vector<MixedAnswer>& answers,
                               const std::vector<ClassGeometry>& folds) {
@@ -583,25 +399,23 @@ std::vector<Kept> MeasureKept(const std::vector<MixedAnswer>& answers,
 
 report::Table MixTable(const std::string& title, const std::vector<ClassGeometry>& folds,
                        const std::vector<MixVariant>& variants) {
-  std::vector<std::string> names;
-  std::vector<std::vector<Kept>> kept;
+  report::Table table{title};
+  table.decimals = 3;
+  for (const MixFigure& figure : kMixFigures) table.rows.push_back({figure.name, {}});
   for (const auto& [name, answers] : variants) {
-    names.push_back(name);
-    kept.push_back(MeasureKept(answers, folds));
-  }
-  report::Table table = EstimateTable(title, names);
-  for (const MixFigure& figure : kMixFigures) {
-    report::TableRow row{figure.name, {}};
-    for (size_t v = 0; v < variants.size(); ++v) {
-      const std::vector<MixedAnswer>& answers = variants[v].second;
-      const auto mean = [&](const std::vector<size_t>& rows) {
-        std::vector<double> values;
-        for (const size_t i : rows) values.push_back(figure.of(answers[i], kept[v][i]));
-        return base::Mean(values);
-      };
-      AddEstimate(LeadersOf(answers), mean, &row);
+    table.columns.insert(table.columns.end(), {name, "low", "high"});
+    const std::vector<Kept> kept = MeasureKept(answers, folds);
+    std::vector<int> leaders;
+    for (const MixedAnswer& answer : answers) leaders.push_back(answer.leader);
+    for (size_t f = 0; f < table.rows.size(); ++f) {
+      std::vector<double> values;
+      for (size_t i = 0; i < answers.size(); ++i) {
+        values.push_back(kMixFigures[f].of(answers[i], kept[i]));
+      }
+      const Estimate estimate = EstimateMean(leaders, values);
+      table.rows[f].values.insert(table.rows[f].values.end(),
+                                  {estimate.mean, estimate.low, estimate.high});
     }
-    table.rows.push_back(std::move(row));
   }
   table.notes = {
       "Ingredients: how much of each class's own geometry the answer keeps, between the same "
@@ -615,145 +429,24 @@ report::Table MixTable(const std::string& title, const std::vector<ClassGeometry
   return table;
 }
 
-report::Table AvoidTable(const std::string& title, const std::vector<AvoidingAnswer>& answers) {
-  using Value = Figure<AvoidingAnswer>;
-  const auto probability = [](const std::vector<float>& of, int label) {
-    return double{of[static_cast<size_t>(label)]};
-  };
-  const Value asked = [=](auto& a) { return probability(a.avoiding, a.own); };
-  const Value alone = [=](auto& a) { return probability(a.alone, a.own); };
-  const Value recognised = [](auto& a) { return Likeliest(a.avoiding) == a.own ? 1.0 : 0.0; };
-  const Value recognised_alone = [](auto& a) { return Likeliest(a.alone) == a.own ? 1.0 : 0.0; };
-  const struct {
-    const char* name;
-    Value of, base;  // base: none, or what its mean is divided by
-  } kFigures[] = {
-      {"requested, of alone", asked, alone},
-      {"recognised, of alone", recognised, recognised_alone},
-      {"avoided", [=](auto& a) { return probability(a.avoiding, a.avoided); }, nullptr},
-      {"avoided, alone", [=](auto& a) { return probability(a.alone, a.avoided); }, nullptr},
-      {"distance moved", [](auto& a) { return std::abs(a.moved); }, nullptr}};
-  report::Table table = EstimateTable(title, {"own 1, other -1"});
-  for (const auto& figure : kFigures) {
-    const auto statistic = [&](const std::vector<size_t>& rows) {
-      const double value = MeanOver(answers, rows, figure.of);
-      return figure.base ? Ratio(value, MeanOver(answers, rows, figure.base)) : value;
-    };
-    AddEstimate(LeadersOf(answers), statistic,
-                &table.rows.emplace_back(report::TableRow{figure.name, {}}));
-  }
-  table.notes = {
-      "Requested, avoided: the judge's probability of the own class and of the class at -1; "
-      "recognised: share of answers whose likeliest class is the own one; of alone: as a ratio to "
-      "the own class at 1 by itself. Distance moved: of the roots, from that answer's, metres."};
-  return table;
-}
-
-int PadSequence(dataset::Sequence* sequence) {
-  const double rate = sequence->pair.leader.frame_rate_hz;
-  const int frames = static_cast<int>(std::lround(kPaddingSeconds * rate));
-  Pad(frames, &sequence->pair.leader);
-  Pad(frames, &sequence->pair.follower);
-  return frames;
-}
-
-Reaction MeasureReaction(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
-                         const Poses& follower) {
-  const body::Body body = body::FindBody(skeleton);
-  const Vec3 away = AwayFromLeader(sequence, skeleton.root);
-  const double rate = sequence.pair.leader.frame_rate_hz;
-  const auto smooth = [rate](const Poses& poses) { return motion::WithoutNoise(poses, rate); };
-  const int action = ActionFrame(skeleton, body, smooth(sequence.pair.leader.poses), away);
-  const int first = std::max(0, action - static_cast<int>(kBeforeActionSeconds * rate));
-  const int end =
-      std::min(follower.frame_count(), action + static_cast<int>(kAfterActionSeconds * rate) + 1);
-  const Poses made = smooth(follower);
-  const auto back = [&](int joint) {
-    const std::vector<double> along = Positions(made, joint, away);
-    return *std::max_element(along.begin() + first, along.begin() + end) -
-           along[static_cast<size_t>(first)];
-  };
-  const int head = body.neck->head;
-  return {back(head), back(skeleton.root),
-          Correlation(VelocityAway(smooth(sequence.pair.follower.poses), head, skeleton.root, away),
-                      VelocityAway(made, head, skeleton.root, away))};
-}
-
-report::Table ReactionTable(const std::string& title, const std::vector<ReactionPair>& pairs) {
-  const auto mean = [&](const std::vector<size_t>& rows, const Figure<ReactionPair>& figure) {
-    return MeanOver(pairs, rows, figure);
-  };
-  std::map<int, std::vector<size_t>> by_class;
-  for (size_t row = 0; row < pairs.size(); ++row) {
-    by_class[pairs[row].interaction_class].push_back(row);
-  }
-  report::Table table = EstimateTable(title, {"as captured", "padded"});
-  // Adds a row with the statistic of each kind of answer.
-  using Answer = Reaction ReactionPair::*;
-  const auto add = [&](const std::string& name, const auto& statistic) {
-    report::TableRow& row = table.rows.emplace_back(report::TableRow{name, {}});
-    for (const Answer answer : {&ReactionPair::made, &ReactionPair::padded}) {
-      AddEstimate(
-          LeadersOf(pairs),
-          [&](const std::vector<size_t>& rows) { return statistic(rows, answer); }, &row);
-    }
-  };
-  for (const bool head : {true, false}) {
-    const auto part = head ? &Reaction::head : &Reaction::torso;
-    const Figure<ReactionPair> captured = [part](const ReactionPair& pair) {
-      return pair.captured.*part;
-    };
-    const std::string name = head ? "head" : "torso";
-    add("amplitude, " + name, [&](const std::vector<size_t>& rows, Answer answer) {
-      const Figure<ReactionPair> made = [=](const ReactionPair& pair) {
-        return pair.*answer.*part;
-      };
-      return Ratio(mean(rows, made), mean(rows, captured));
-    });
-    std::map<int, double> usual;
-    for (const auto& [c, rows] : by_class) usual[c] = mean(rows, captured);
-    add(name + " goes back", [&](const std::vector<size_t>& rows, Answer answer) {
-      return mean(rows, [&](const ReactionPair& pair) {
-        return pair.*answer.*part > usual.at(pair.interaction_class) / 2 ? 1.0 : 0.0;
-      });
-    });
-  }
-  add("correlation", [&](const std::vector<size_t>& rows, Answer answer) {
-    return mean(rows, [answer](const ReactionPair& pair) { return (pair.*answer).correlation; });
-  });
-  table.notes = {
-      "Amplitude: how far head and torso go away from the leader, from 0.3 s before to 1 s after "
-      "the leader reaches farthest, as a ratio of means to the captured followers. Goes back: "
-      "share of answers that go back by more than half of the captured mean of their class. "
-      "Correlation: of the velocity away from the leader with the captured follower's, mean over "
-      "the answers. Padded: the leader stands still for a second before and after. Low, high: 95 % "
-      "interval by the bootstrap over leaders."};
-  return table;
-}
-
-void AddEstimate(const std::vector<int>& leaders, const Statistic& statistic,
-                 report::TableRow* row) {
+Estimate EstimateMean(const std::vector<int>& leaders, const std::vector<double>& values) {
   constexpr int kResamples = 400;
-  std::vector<size_t> all(leaders.size());
-  std::iota(all.begin(), all.end(), size_t{0});
-  std::map<int, std::vector<size_t>> rows_of;
-  for (const size_t i : all) rows_of[leaders[i]].push_back(i);
-  std::vector<const std::vector<size_t>*> groups;
-  for (const auto& [leader, rows] : rows_of) groups.push_back(&rows);
+  std::map<int, std::vector<double>> by_leader;
+  for (size_t i = 0; i < leaders.size(); ++i) by_leader[leaders[i]].push_back(values[i]);
+  std::vector<const std::vector<double>*> groups;
+  for (const auto& [leader, of_leader] : by_leader) groups.push_back(&of_leader);
   base::Random random(0);
-  std::vector<double> values;
+  std::vector<double> means;
   for (int n = 0; n < kResamples && !groups.empty(); ++n) {
-    std::vector<size_t> drawn;
+    std::vector<double> drawn;
     for (size_t i = 0; i < groups.size(); ++i) {
-      const auto& rows =
-          *groups[static_cast<size_t>(random.Below(static_cast<int64_t>(groups.size())))];
-      drawn.insert(drawn.end(), rows.begin(), rows.end());
+      const auto pick = static_cast<size_t>(random.Below(static_cast<int64_t>(groups.size())));
+      drawn.insert(drawn.end(), groups[pick]->begin(), groups[pick]->end());
     }
-    const double value = statistic(drawn);
-    if (!std::isnan(value)) values.push_back(value);
+    const double mean = base::Mean(drawn);
+    if (!std::isnan(mean)) means.push_back(mean);
   }
-  row->values.insert(row->values.end(), {statistic(all), base::Quantile(values, 0.025),
-                                         base::Quantile(values, 0.975)});
+  return {base::Mean(values), base::Quantile(means, 0.025), base::Quantile(means, 0.975)};
 }
 
 Measure AddMixesCommand(CLI::App* command) {
@@ -761,10 +454,6 @@ Measure AddMixesCommand(CLI::App* command) {
   AddAnswersFlags(flags.get(), command);
   AddNumber("--leaders", &flags->leaders, 0, 1000,
             "leaders of each class in a fold; 0: all of the left-out subject", command);
-  command
-      ->add_option("--reaction-classes", flags->reaction_classes,
-                   "classes of the reaction (default: all)")
-      ->delimiter(',');
   return [flags] { return RunMixes(*flags); };
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "model/authoring/made_leaders.h"
-#include "model/base/statistics.h"
 #include "model/evaluation/program/experiment.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
@@ -18,18 +17,9 @@ using motion::Vec3;
 constexpr double kRate = 15;
 constexpr Vec3 kAway = {0, 0, -1};
 
-// The mean of the rows, and its interval.
 std::vector<double> Estimated(const std::vector<int>& leaders, const std::vector<double>& values) {
-  report::TableRow row;
-  AddEstimate(
-      leaders,
-      [&](const std::vector<size_t>& rows) {
-        std::vector<double> some;
-        for (const size_t i : rows) some.push_back(values[i]);
-        return base::Mean(some);
-      },
-      &row);
-  return row.values;
+  const Estimate estimate = EstimateMean(leaders, values);
+  return {estimate.mean, estimate.low, estimate.high};
 }
 
 TEST(EstimateTest, IntervalSpansTheLeadersAndNotTheirRows) {
@@ -51,7 +41,7 @@ Poses Follower(double metres = 0) {
 }
 
 double Feature(const std::string& name, const Poses& follower) {
-  const std::vector<std::string>& names = MeetingFeatures();
+  const std::vector<std::string> names = MeetingFeatures();
   const auto found = std::find(names.begin(), names.end(), name);
   EXPECT_NE(found, names.end()) << name;
   dataset::Sequence sequence;
@@ -97,7 +87,7 @@ TEST(MeetingGeometryTest, MadeUpClassesDifferInTheStepBack) {
   ASSERT_TRUE(CanMeasureMeeting(dataset.skeleton));
   const ClassGeometry classes = MeasureClasses(dataset, AllSequences(dataset));
   ASSERT_EQ(classes.means.size(), 2u);
-  const auto& names = MeetingFeatures();
+  const auto names = MeetingFeatures();
   const auto retreats =
       static_cast<size_t>(std::find(names.begin(), names.end(), "root retreats") - names.begin());
   EXPECT_GT(classes.Own(1, 0, retreats), 0.1);
@@ -165,16 +155,6 @@ TEST(MixesTest, TableHasAFigureAVariant) {
   EXPECT_DOUBLE_EQ(value("weaker ingredient", 3), 0.6);
   EXPECT_EQ(value("both above half", 3), 0.5);
   EXPECT_EQ(value("third class", 3), 1);
-}
-
-TEST(MixesTest, AvoidingIsComparedWithTheClassAlone) {
-  const report::Table table = AvoidTable("n", {{0, 0, 1, {0.8f, 0.2f}, {0.6f, 0.4f}, 0.1},
-                                               {1, 0, 1, {0.8f, 0.2f}, {0.2f, 0.8f}, -0.3}});
-  std::vector<double> values;
-  for (const report::TableRow& row : table.rows) values.push_back(row.values[0]);
-  EXPECT_THAT(values,
-              ElementsAre(::testing::DoubleNear(0.5, 1e-6), 0.5, ::testing::DoubleNear(0.6, 1e-6),
-                          ::testing::DoubleNear(0.2, 1e-6), ::testing::DoubleNear(0.2, 1e-9)));
 }
 
 }  // namespace
