@@ -54,12 +54,11 @@ class Client {
                                                       const ChunkCallback& on_chunk) const {
     return connection_->Synthesize(request, on_chunk);
   }
-  // Starts a call and returns immediately. For callers that run many calls concurrently and handle
-  // failures themselves: makes one attempt, whatever the retry options are.
+  // Starts a call and returns immediately. For callers that run several calls concurrently and
+  // handle failures themselves: makes one attempt, whatever the retry options are.
   //
-  // Calls `done` once, on a thread of gRPC. Few such threads read all replies, so `done` should
-  // return quickly. Destroying the last copy of a Client waits for calls in progress, so `done`
-  // must not hold a copy.
+  // Calls `done` once, on the call's own thread. Destroying the last copy of a Client waits for
+  // calls in progress, so `done` must not hold a copy.
   void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const {
     connection_->SynthesizeAsync(std::move(request), done);
   }

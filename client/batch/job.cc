@@ -12,7 +12,6 @@ namespace {
 
 constexpr int kAttempts = 3;  // of a call that fails temporarily
 constexpr size_t kQueuedItems = 64;
-constexpr size_t kQueuedAnswers = 64;
 constexpr size_t kUnwrittenBytes = size_t{64} << 20;
 // How long items are collected before they are flushed to disk together. A flush costs as much as
 // several items, and an item that is lost before the flush is requested again.
@@ -24,12 +23,6 @@ std::optional<flow::Duration> DelayOf(const absl::Status& status) {
   return absl::ToChronoNanoseconds(*delay);
 }
 
-// The number of askers, and of keepers: one for each core, and at least two, so that one can work
-// while the other waits.
-int ThreadsOfAKind() {
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 2, 8);
-}
-
 }  // namespace
 
 Job::Job(Parts parts, Plan plan, const JobOptions& options)
@@ -38,7 +31,6 @@ Job::Job(Parts parts, Plan plan, const JobOptions& options)
       options_(options),
       gate_(options.calls, options.patience),
       queue_(kQueuedItems),
-      answers_(kQueuedAnswers),
       settled_(kUnwrittenBytes),
       skeleton_indices_(SkeletonIndices(parts_.skeletons)),
       leaders_(parts_.models.size()) {}
@@ -98,41 +90,31 @@ void Job::Ask(Work work) {
     StopWith(unchanged);
     return queue_.Done();
   }
-  SynthesisRequest request =
+  const SynthesisRequest request =
       ToRequest(work.item, parts_.recipe, parts_.models[model], *leader, work.retry);
   const std::optional<int64_t> call = gate_.Start();
   if (!call.has_value()) {
     queue_.Done();
     return queue_.Stop();  // no more calls start
   }
-  parts_.client.SynthesizeAsync(std::move(request), [this, call = *call, work = std::move(work)](
-                                                        absl::StatusOr<SynthesisResult> result) {
-    gate_.Finish(call, CallEndOf(result.status()), DelayOf(result.status()));
-    answers_.Put({work, std::move(result)});
-  });
-}
-
-void Job::KeepUntilClosed() {
-  while (std::optional<Answered> answered = answers_.Take()) {
-    Receive(*std::move(answered));
-    answers_.Done();
-  }
+  absl::StatusOr<SynthesisResult> result = parts_.client.Synthesize(request);
+  gate_.Finish(*call, CallEndOf(result.status()), DelayOf(result.status()));
+  Receive(std::move(work), std::move(result));
 }
 
 // Finishes the item, or puts it back for another attempt.
-void Job::Receive(Answered answered) {
-  const absl::Status status = answered.result.status();
-  Work& work = answered.work;
+void Job::Receive(Work work, absl::StatusOr<SynthesisResult> result) {
+  const absl::Status status = result.status();
   switch (MeaningOf(status)) {
     case Meaning::kAnswer:
       if (const absl::Status same =
-              parts_.survey->CheckMaker(ModelText(*answered.result), MadeByOf(*answered.result));
+              parts_.survey->CheckMaker(ModelText(*result), MadeByOf(*result));
           !same.ok()) {
         StopWith(same);
         break;
       }
-      answered.result->pair = AtOutputRate(std::move(answered.result->pair), parts_.recipe.output);
-      return Judge(std::move(work), *answered.result);
+      result->pair = AtOutputRate(std::move(result->pair), parts_.recipe.output);
+      return Judge(std::move(work), *result);
     case Meaning::kWait:
       return queue_.PutBack(std::move(work));
     case Meaning::kTryAgain:
@@ -224,18 +206,14 @@ absl::Status Job::Write(const std::vector<Settled>& all, FileGroup* files, Journ
 
 absl::Status Job::RunThreads(JournalWriter* writer) {
   std::thread on_disk([this, writer] { WriteUntilClosed(writer); });
-  std::vector<std::thread> askers, keepers;
-  for (int i = 0; i < ThreadsOfAKind(); ++i) {
+  std::vector<std::thread> askers;
+  for (int i = 0; i < options_.calls.max_in_flight; ++i) {
     askers.emplace_back([this] { AskUntilDone(); });
-    keepers.emplace_back([this] { KeepUntilClosed(); });
   }
   const absl::Status fed = Feed();
   queue_.Close();
   if (!fed.ok()) Stop();
   for (std::thread& asker : askers) asker.join();
-  queue_.WaitUntilNoneIsTaken();
-  answers_.Close();
-  for (std::thread& keeper : keepers) keeper.join();
   settled_.Close();
   on_disk.join();
   return fed;

@@ -56,9 +56,9 @@ struct JobReport {
 
 // One run of a batch: requests every item of a plan that is not settled yet, stores the answers,
 // and writes the index. Reading, calls and writing overlap. An item passes from the feeder (reads
-// the plan) to an asker (reads the leader, starts the call), to a keeper (judges the answer,
-// encodes its files) and to the writer, which writes many items to disk at once. No thread waits
-// for a call.
+// the plan) to an asker (reads the leader, calls the server, judges the answer, encodes its files)
+// and to the writer, which writes many items to disk at once. There is an asker for each call that
+// may be in flight.
 //
 // An item is settled when its files and then its journal record are on disk. Whenever the process
 // ends, the next run requests the items that are not settled again, gets the same answers and
@@ -92,10 +92,6 @@ class Job {
     int retry = 0;     // selects the seed
     int attempts = 0;  // that failed temporarily
   };
-  struct Answered {
-    Work work;
-    absl::StatusOr<SynthesisResult> result;
-  };
   // An item with a final result, on its way to the disk.
   struct Settled {
     Item item;
@@ -107,8 +103,7 @@ class Job {
   absl::Status Feed();
   void AskUntilDone();
   void Ask(Work work);
-  void KeepUntilClosed();
-  void Receive(Answered answered);
+  void Receive(Work work, absl::StatusOr<SynthesisResult> result);
   void Judge(Work work, const SynthesisResult& result);
   void Keep(const Item& item, const Answer& answer);
   void Fail(const Item& item, const absl::Status& error);
@@ -125,7 +120,6 @@ class Job {
   JobOptions options_;
   flow::CallGate gate_;
   flow::Queue<Work> queue_;
-  flow::Queue<Answered> answers_;
   flow::Queue<Settled> settled_;  // by bytes
 
   const std::vector<int> skeleton_indices_;  // of dataset.json, by model

@@ -1,7 +1,9 @@
 #ifndef DUET_CLIENT_INTERNAL_CONNECT_H_
 #define DUET_CLIENT_INTERNAL_CONNECT_H_
 
+#include <condition_variable>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,8 +13,8 @@
 #include "client/connection.h"
 #include "client/internal/reply_assembler.h"
 #include "client/internal/retry.h"
-#include "client/internal/stub.h"
 #include "client/options.h"
+#include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/channel.h"
 
 namespace duet::client::internal {
@@ -40,12 +42,16 @@ struct TlsNames {
 // call, as if there were no server. INVALID_ARGUMENT, never with any part of the key.
 absl::Status CheckTls(const TlsOptions& tls, const TlsNames& names = {});
 
-// Makes calls through a stub: converts values to protos and back, sets the deadline, retries, and
+// Makes calls over a channel: converts values to protos and back, sets the deadline, retries, and
 // validates the replies.
 class ConnectionImpl final : public Connection {
  public:
-  ConnectionImpl(std::shared_ptr<Stub> stub, const ClientOptions& options,
-                 RetryEnvironment environment = SystemEnvironment());
+  ConnectionImpl(const std::shared_ptr<grpc::Channel>& channel, const ClientOptions& options,
+                 RetryEnvironment environment);
+  ConnectionImpl(const ConnectionImpl&) = delete;
+  ConnectionImpl& operator=(const ConnectionImpl&) = delete;
+  // Waits for the calls of SynthesizeAsync.
+  ~ConnectionImpl() override;
 
   absl::StatusOr<std::vector<ModelInfo>> ListModels() override;
   absl::StatusOr<ModelDetails> GetModel(const ModelChoice& choice) override;
@@ -56,16 +62,26 @@ class ConnectionImpl final : public Connection {
                                                          LiveCallbacks callbacks) override;
 
  private:
-  RetryLimits Limits(const CallContext& call) const;
-  absl::Status RunStream(const CallContext& call, const v1::SynthesizeRequest& request,
-                         ReplyAssembler* reply, absl::Time* first_chunk);
-  absl::Time Deadline() const { return environment_.now() + deadline_; }
+  using Stub = v1::MotionSynthesis::Stub;
 
-  std::shared_ptr<Stub> stub_;
-  absl::Duration deadline_, wait_;
-  std::string server_address_;
-  RetryOptions retry_;
-  RetryEnvironment environment_;
+  // Calls a method that answers with one message.
+  template <typename Request, typename Response>
+  absl::StatusOr<Response> Call(grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
+                                                             Response*),
+                                const Request& request);
+  absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
+                                             const ChunkCallback& on_chunk,
+                                             const RetryOptions& retry);
+  absl::Status RunStream(grpc::ClientContext* context, const v1::SynthesizeRequest& request,
+                         ReplyAssembler* reply, absl::Time* first_chunk);
+
+  const std::shared_ptr<Stub> stub_;
+  const ClientOptions options_;
+  const RetryEnvironment environment_;
+
+  std::mutex mutex_;
+  std::condition_variable none_in_progress_;
+  int in_progress_ = 0;  // calls of SynthesizeAsync
 };
 
 }  // namespace duet::client::internal

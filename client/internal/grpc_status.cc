@@ -29,6 +29,15 @@ std::string MissingViolations(const absl::Status& status) {
 
 }  // namespace
 
+std::unique_ptr<grpc::ClientContext> NewContext(absl::Time deadline, const std::string& token,
+                                                const std::string& request_id) {
+  auto context = std::make_unique<grpc::ClientContext>();
+  context->set_deadline(absl::ToChronoTime(deadline));
+  if (!token.empty()) context->AddMetadata("authorization", "Bearer " + token);
+  if (!request_id.empty()) context->AddMetadata("x-request-id", request_id);
+  return context;
+}
+
 absl::Status WithPayloadsOf(const absl::Status& from, absl::Status to) {
   from.ForEachPayload([&to](absl::string_view type_url, const absl::Cord& payload) {
     to.SetPayload(type_url, payload);

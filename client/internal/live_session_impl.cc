@@ -31,10 +31,9 @@ absl::Status WithoutDelay(absl::Status status) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<LiveSession>> LiveSessionImpl::Start(std::shared_ptr<Stub> stub,
-                                                                    const LiveRequest& request,
-                                                                    LiveCallbacks callbacks,
-                                                                    LiveSettings settings) {
+absl::StatusOr<std::unique_ptr<LiveSession>> LiveSessionImpl::Start(
+    std::shared_ptr<v1::MotionSynthesis::Stub> stub, const LiveRequest& request,
+    LiveCallbacks callbacks, LiveSettings settings) {
   if (!callbacks.on_frames) {
     return absl::InvalidArgumentError("on_frames: expected a function, got none");
   }
@@ -53,7 +52,7 @@ absl::StatusOr<std::unique_ptr<LiveSession>> LiveSessionImpl::Start(std::shared_
   return session;
 }
 
-LiveSessionImpl::LiveSessionImpl(std::shared_ptr<Stub> stub, LiveState state,
+LiveSessionImpl::LiveSessionImpl(std::shared_ptr<v1::MotionSynthesis::Stub> stub, LiveState state,
                                  std::string request_id, LiveCallbacks callbacks,
                                  LiveSettings settings)
     : stub_(std::move(stub)),
@@ -69,7 +68,7 @@ LiveSessionImpl::~LiveSessionImpl() {
   {
     const Lock lock(mutex_);
     abandoned_ = true;
-    if (stream_ != nullptr) stream_->Cancel();
+    if (context_ != nullptr) context_->TryCancel();
     changed_.notify_all();
   }
   reader_.join();
@@ -152,11 +151,11 @@ void LiveSessionImpl::Read() {
 // be opened, or why the session may not go on.
 absl::Status LiveSessionImpl::RunUntilBroken() {
   const bool resumes = broken_;
-  const absl::Time deadline = settings_.environment.now() + settings_.deadline;
-  return Retry(resumes ? ForResuming(settings_.retry) : settings_.retry, InterruptibleEnvironment(),
+  const ClientOptions& options = settings_.client;
+  const absl::Time deadline = settings_.environment.now() + options.deadline;
+  return Retry(resumes ? ForResuming(options.retry) : options.retry, InterruptibleEnvironment(),
                resumes ? Priority::kBulk : Priority::kInteractive,
-               {deadline, settings_.wait, settings_.server_address},
-               [this] { return RunStream(); });
+               {deadline, options.wait, options.server_address}, [this] { return RunStream(); });
 }
 
 RetryEnvironment LiveSessionImpl::InterruptibleEnvironment() {
@@ -189,7 +188,7 @@ AttemptEnd LiveSessionImpl::RunStream() {
   for (bool wanted = true; stream_->Read(&response);) {
     if (!wanted) continue;  // cancelled; drop what still arrives
     wanted = Handle(response);
-    if (!wanted) stream_->Cancel();
+    if (!wanted) context_->TryCancel();
   }
   absl::Status ended = CloseStream();
   Lock lock(mutex_);
@@ -202,7 +201,8 @@ AttemptEnd LiveSessionImpl::RunStream() {
                                                " frames and cannot be resumed: ", info_.model_name,
                                                "@", info_.model_version, " is no longer served")));
   }
-  const bool may_retry = IsRetryable(ended, Priority::kBulk) && settings_.retry.max_attempts > 1;
+  const bool may_retry =
+      IsRetryable(ended, Priority::kBulk) && settings_.client.retry.max_attempts > 1;
   if (!was_open || !may_retry) return {WithoutDelay(std::move(ended)), was_open};
   broken_ = true;
   const bool worked = HasProof(opened, delivered_before);
@@ -216,7 +216,8 @@ AttemptEnd LiveSessionImpl::RunStream() {
 bool LiveSessionImpl::OpenStream() {
   const Lock lock(mutex_);
   if (abandoned_) return false;
-  stream_ = stub_->SynthesizeLive({absl::InfiniteFuture(), request_id_});
+  context_ = NewContext(absl::InfiniteFuture(), settings_.client.token, request_id_);
+  stream_ = stub_->SynthesizeLive(context_.get());
   outgoing_ = state_.BeginStream();
   can_write_ = true;
   half_closed_ = silent_ = draining_ = false;
@@ -253,16 +254,18 @@ bool LiveSessionImpl::Handle(const v1::SynthesizeLiveResponse& response) {
 
 // Waits for the writer, and returns how the stream ended: OK is an early end, too.
 absl::Status LiveSessionImpl::CloseStream() {
-  std::unique_ptr<LiveStream> stream;
+  std::unique_ptr<grpc::ClientContext> context;
+  std::unique_ptr<Stream> stream;
   bool silent = false;
   {
     Lock lock(mutex_);
     can_write_ = false;
     changed_.wait(lock, [this] { return !writing_; });
+    context = std::move(context_);
     stream = std::move(stream_);
     silent = silent_;
   }
-  const absl::Status ended = stream->Finish();
+  const absl::Status ended = FromGrpc(stream->Finish());
   if (!ended.ok() && !IsBrokenConnection(ended)) return ended;
   if (!ended.ok() && !state_.is_open() && !silent) return ended;
   absl::Status broken = absl::UnavailableError(absl::StrCat(
@@ -298,7 +301,7 @@ void LiveSessionImpl::Write() {
 }
 
 void LiveSessionImpl::WriteOne(Lock* lock) {
-  LiveStream& stream = *stream_;  // stays while writing_ is true
+  Stream& stream = *stream_;  // stays while writing_ is true
   writing_ = true;
   bool written = false;
   if (outgoing_.empty()) {
@@ -327,7 +330,7 @@ void LiveSessionImpl::CheckSilence() {
   const auto silence = std::chrono::steady_clock::now() - heard_;
   if (silence < absl::ToChronoNanoseconds(settings_.longest_silence)) return;
   silent_ = true;
-  stream_->Cancel();
+  context_->TryCancel();
 }
 
 }  // namespace duet::client::internal

@@ -16,17 +16,15 @@
 #include "absl/time/time.h"
 #include "client/internal/live_state.h"
 #include "client/internal/retry.h"
-#include "client/internal/stub.h"
 #include "client/live_session.h"
 #include "client/options.h"
+#include "duet/v1/synthesis.grpc.pb.h"
 
 namespace duet::client::internal {
 
 // What a session takes from its connection.
 struct LiveSettings {
-  absl::Duration deadline, wait;  // of ClientOptions
-  std::string server_address;
-  RetryOptions retry;
+  ClientOptions client;
   RetryEnvironment environment;
   // A stream that owes frames and is silent for this long counts as broken.
   absl::Duration longest_silence = absl::Seconds(5);
@@ -35,16 +33,15 @@ struct LiveSettings {
   absl::Duration proof = absl::Seconds(5);
 };
 
-// A session over the streams of a stub. Two threads: the reader opens streams, reads them and calls
-// the callbacks; the writer writes what was sent. The state is under one mutex, which neither of
-// them holds while it waits for the network or runs a callback.
+// A session over the streams of a service. Two threads: the reader opens streams, reads them and
+// calls the callbacks; the writer writes what was sent. The state is under one mutex, which neither
+// of them holds while it waits for the network or runs a callback.
 class LiveSessionImpl final : public LiveSession {
  public:
   // Blocks until the first stream has its header.
-  static absl::StatusOr<std::unique_ptr<LiveSession>> Start(std::shared_ptr<Stub> stub,
-                                                            const LiveRequest& request,
-                                                            LiveCallbacks callbacks,
-                                                            LiveSettings settings);
+  static absl::StatusOr<std::unique_ptr<LiveSession>> Start(
+      std::shared_ptr<v1::MotionSynthesis::Stub> stub, const LiveRequest& request,
+      LiveCallbacks callbacks, LiveSettings settings);
   LiveSessionImpl(const LiveSessionImpl&) = delete;
   LiveSessionImpl& operator=(const LiveSessionImpl&) = delete;
   ~LiveSessionImpl() override;
@@ -58,9 +55,10 @@ class LiveSessionImpl final : public LiveSession {
  private:
   using Lock = std::unique_lock<std::mutex>;
   using SteadyTime = std::chrono::steady_clock::time_point;
+  using Stream = grpc::ClientReaderWriter<v1::SynthesizeLiveRequest, v1::SynthesizeLiveResponse>;
 
-  LiveSessionImpl(std::shared_ptr<Stub> stub, LiveState state, std::string request_id,
-                  LiveCallbacks callbacks, LiveSettings settings);
+  LiveSessionImpl(std::shared_ptr<v1::MotionSynthesis::Stub> stub, LiveState state,
+                  std::string request_id, LiveCallbacks callbacks, LiveSettings settings);
 
   absl::Status CheckOpen() const;  // requires the lock
   void Enqueue(v1::SynthesizeLiveRequest message);
@@ -84,7 +82,7 @@ class LiveSessionImpl final : public LiveSession {
   // Cancels a stream that owes something and is silent. Requires the lock.
   void CheckSilence();
 
-  const std::shared_ptr<Stub> stub_;
+  const std::shared_ptr<v1::MotionSynthesis::Stub> stub_;
   const std::string request_id_;
   const LiveCallbacks callbacks_;
   const LiveSettings settings_;
@@ -93,7 +91,8 @@ class LiveSessionImpl final : public LiveSession {
   std::condition_variable changed_;
   LiveState state_;
   std::deque<v1::SynthesizeLiveRequest> outgoing_;
-  std::unique_ptr<LiveStream> stream_;
+  std::unique_ptr<grpc::ClientContext> context_;  // of stream_
+  std::unique_ptr<Stream> stream_;
   bool can_write_ = false;  // the stream takes messages
   bool writing_ = false;    // the writer is using the stream
   bool half_closed_ = false;

@@ -1,52 +1,122 @@
+// Calls and their retries over a real connection to an in-process server, with a fake clock.
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/synchronization/notification.h"
+#include "absl/time/time.h"
 #include "client/internal/connect.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/client/support/fake_stub.h"
+#include "tests/client/support/fake_service.h"
+#include "tests/client/support/replies.h"
 #include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
 
 using test::ChunkFor;
-using test::FakeStub;
+using test::FakeServer;
 using test::FakeTime;
 using test::FollowerFor;
 using test::HeaderFor;
 using test::ReplyFor;
-using test::ScriptedStream;
-using test::ServiceError;
 using test::ThreeJointLeader;
 
 using Reply = std::vector<v1::SynthesizeResponse>;
+using Writer = grpc::ServerWriter<v1::SynthesizeResponse>;
+
+// What one stream brings, and how it ends.
+struct ScriptedStream {
+  Reply responses;
+  grpc::Status end;
+  // Sends the last response again and again, until the client cancels the stream.
+  bool until_cancelled = false;
+};
+
+grpc::Status Away() { return {grpc::StatusCode::UNAVAILABLE, "away"}; }
 
 class ConnectionTest : public ::testing::Test {
  protected:
   ConnectionTest() {
     request_.leader = ThreeJointLeader(5);
     request_.weights = {{"kick", 1}};
-    options_.deadline = absl::Seconds(30);
+    options_.server_address = server_.address();
+    server_.service().on_synthesize = [this](grpc::ServerContext* context,
+                                             const v1::SynthesizeRequest& request, Writer* writer) {
+      return Play(*context, request, writer);
+    };
   }
 
+  std::unique_ptr<ConnectionImpl> Connect() {
+    return std::make_unique<ConnectionImpl>(*OpenChannel(options_), options_, time_.Environment());
+  }
   absl::StatusOr<SynthesisResult> Synthesize(const ChunkCallback& on_chunk = nullptr) {
-    return ConnectionImpl(stub_, options_, time_.Environment()).Synthesize(request_, on_chunk);
+    return Connect()->Synthesize(request_, on_chunk);
+  }
+  absl::StatusOr<SynthesisResult> SynthesizeAsync() {
+    absl::StatusOr<SynthesisResult> result;
+    absl::Notification ended;
+    Connect()->SynthesizeAsync(request_, [&](absl::StatusOr<SynthesisResult> ends) {
+      result = std::move(ends);
+      ended.Notify();
+    });
+    ended.WaitForNotification();
+    return result;
   }
 
   ScriptedStream Good(int chunk_frames = 2) {
-    return {ReplyFor(request_.leader, chunk_frames), absl::OkStatus()};
+    return {ReplyFor(request_.leader, chunk_frames), grpc::Status::OK};
   }
   // Breaks after the header and the first two frames.
   ScriptedStream Broken() {
     return {{HeaderFor(request_.leader), ChunkFor(request_.leader, 0, 2)},
-            absl::UnavailableError("connection reset")};
+            {grpc::StatusCode::UNAVAILABLE, "connection reset"}};
   }
-  static ScriptedStream Refused(const absl::Status& status) { return {{}, status}; }
+  // Lacks the first two frames.
+  ScriptedStream Malformed() {
+    return {{HeaderFor(request_.leader), ChunkFor(request_.leader, 2, 2)}, {}, true};
+  }
+  static ScriptedStream Refused(const grpc::Status& status) { return {{}, status}; }
 
-  std::shared_ptr<FakeStub> stub_ = std::make_shared<FakeStub>();
+  struct Attempt {
+    v1::SynthesizeRequest request;
+    absl::Time deadline;
+    std::string request_id;
+  };
+  // Of the calls of Synthesize.
+  std::vector<Attempt> attempts() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return attempts_;
+  }
+
+ private:
+  grpc::Status Play(const grpc::ServerContext& context, const v1::SynthesizeRequest& request,
+                    Writer* writer) {
+    ScriptedStream script{{}, {grpc::StatusCode::INTERNAL, "not scripted"}};
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (attempts_.size() < streams_.size()) script = streams_[attempts_.size()];
+      const auto id = context.client_metadata().find("x-request-id");
+      attempts_.push_back({request, absl::FromChrono(context.deadline()),
+                           id == context.client_metadata().end()
+                               ? ""
+                               : std::string(id->second.begin(), id->second.end())});
+    }
+    for (const v1::SynthesizeResponse& response : script.responses) writer->Write(response);
+    while (script.until_cancelled && writer->Write(script.responses.back())) {
+    }
+    return script.end;
+  }
+
+  std::mutex mutex_;
+  std::vector<Attempt> attempts_;
+
+ protected:
+  std::vector<ScriptedStream> streams_;  // one for each attempt
+  FakeServer server_;                    // its handlers use the members above
   ClientOptions options_;
   FakeTime time_;
   SynthesisRequest request_;
@@ -54,12 +124,17 @@ class ConnectionTest : public ::testing::Test {
 
 TEST_F(ConnectionTest, EveryAttemptCarriesTheSameDeadlineAndRequestId) {
   request_.request_id = "mine";
-  stub_->streams = {Refused(absl::UnavailableError("away")), Good()};
+  options_.deadline = absl::Hours(2);
+  options_.retry.initial_backoff = options_.retry.max_backoff = absl::Hours(1);
+  streams_ = {Refused(Away()), Good()};
   const absl::Time deadline = time_.now + options_.deadline;
   ASSERT_THAT(Synthesize(), IsOk());
-  ASSERT_THAT(stub_->contexts, SizeIs(2));
-  EXPECT_THAT(stub_->contexts, Each(Field(&CallContext::deadline, deadline)));
-  EXPECT_THAT(stub_->contexts, Each(Field(&CallContext::request_id, "mine")));
+  ASSERT_THAT(attempts(), SizeIs(2));
+  for (const Attempt& attempt : attempts()) {
+    EXPECT_EQ(attempt.request_id, "mine");
+    // A deadline travels as the time that is left.
+    EXPECT_LT(absl::AbsDuration(attempt.deadline - deadline), absl::Minutes(10));
+  }
 }
 
 TEST_F(ConnectionTest, RefusesARequestIdThatMetadataCannotCarry) {
@@ -70,18 +145,13 @@ TEST_F(ConnectionTest, RefusesARequestIdThatMetadataCannotCarry) {
                                   ::testing::StartsWith("request_id: expected 1 to 128 printable "
                                                         "ASCII characters without spaces, got "));
     EXPECT_THAT(Synthesize(), refused);
-    absl::Status ended;
-    ConnectionImpl(stub_, options_, time_.Environment())
-        .SynthesizeAsync(request_, [&ended](const absl::StatusOr<SynthesisResult>& result) {
-          ended = result.status();
-        });
-    EXPECT_THAT(ended, refused);
+    EXPECT_THAT(SynthesizeAsync(), refused);
   }
-  EXPECT_THAT(stub_->contexts, ::testing::IsEmpty());
+  EXPECT_THAT(attempts(), ::testing::IsEmpty());
 }
 
 TEST_F(ConnectionTest, BrokenStreamIsRetried) {
-  stub_->streams = {Broken(), Good()};
+  streams_ = {Broken(), Good()};
   const absl::StatusOr<SynthesisResult> result = Synthesize();
   ASSERT_THAT(result, IsOk());
   EXPECT_EQ(result->pair.follower.poses, FollowerFor(request_.leader));
@@ -90,40 +160,33 @@ TEST_F(ConnectionTest, BrokenStreamIsRetried) {
 }
 
 TEST_F(ConnectionTest, MalformedReplyIsCancelledAndNotRetried) {
-  ScriptedStream malformed = Good();
-  malformed.responses.erase(malformed.responses.begin() + 1);
-  stub_->streams = {malformed};
+  streams_ = {Malformed()};  // would never end
   EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.first_frame")));
-  EXPECT_EQ(stub_->cancelled, 1);
+  EXPECT_THAT(attempts(), SizeIs(1));
 }
 
 TEST_F(ConnectionTest, AsynchronousCallIsNotRetried) {
-  std::vector<absl::StatusOr<SynthesisResult>> results;
-  const auto done = [&results](absl::StatusOr<SynthesisResult> result) {
-    results.push_back(std::move(result));
-  };
-  ScriptedStream malformed = Good();
-  malformed.responses.erase(malformed.responses.begin() + 1);
-  stub_->streams = {Good(), Broken(), Refused(absl::UnavailableError("away")), malformed};
-  ConnectionImpl connection(stub_, options_, time_.Environment());
-  for (int call = 0; call < 4; ++call) connection.SynthesizeAsync(request_, done);
+  streams_ = {Good(), Broken(), Refused(Away()), Malformed()};
+  const absl::StatusOr<SynthesisResult> result = SynthesizeAsync();
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->pair.follower.poses, FollowerFor(request_.leader));
+  EXPECT_EQ(result->attempt_count, 1);
+  EXPECT_THAT(SynthesizeAsync(),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 2 of 5")));
+  EXPECT_THAT(SynthesizeAsync(),
+              StatusIs(absl::StatusCode::kUnavailable,
+                       "the server at " + server_.address() + " cannot be reached: away"));
+  EXPECT_THAT(SynthesizeAsync(),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.first_frame")));
   request_.chunk_frames = 0;
-  connection.SynthesizeAsync(request_, done);
-  ASSERT_THAT(results, SizeIs(5));
-  ASSERT_THAT(results[0], IsOk());
-  EXPECT_EQ(results[0]->pair.follower.poses, FollowerFor(request_.leader));
-  EXPECT_EQ(results[0]->attempt_count, 1);
-  EXPECT_THAT(results[1], StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 2 of 5")));
-  EXPECT_THAT(results[2], StatusIs(absl::StatusCode::kUnavailable,
-                                   "the server at localhost:50051 cannot be reached: away"));
-  EXPECT_THAT(results[3], StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.first_frame")));
-  EXPECT_EQ(stub_->cancelled, 1);
-  EXPECT_THAT(results[4], StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("chunk_frames")));
+  EXPECT_THAT(SynthesizeAsync(),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("chunk_frames")));
+  EXPECT_THAT(attempts(), SizeIs(4));
   EXPECT_THAT(time_.sleeps, SizeIs(0));
 }
 
 TEST_F(ConnectionTest, CallbackGetsEveryFrameOnceAcrossRetries) {
-  stub_->streams = {Broken(), Good(3)};
+  streams_ = {Broken(), Good(3)};
   motion::Poses frames(0, request_.leader.joint_count());
   const absl::StatusOr<SynthesisResult> result = Synthesize([&](const FollowerChunk& chunk) {
     EXPECT_EQ(chunk.first_frame, frames.frame_count());
@@ -135,26 +198,27 @@ TEST_F(ConnectionTest, CallbackGetsEveryFrameOnceAcrossRetries) {
 }
 
 TEST_F(ConnectionTest, AResumedStreamComesFromTheSameModelVersion) {
-  stub_->streams = {Broken(), Refused(absl::UnavailableError("away")), Good()};
+  streams_ = {Broken(), Refused(Away()), Good()};
   ASSERT_THAT(Synthesize([](const FollowerChunk&) { return absl::OkStatus(); }), IsOk());
-  ASSERT_THAT(stub_->synthesize_requests, SizeIs(3));
-  EXPECT_EQ(stub_->synthesize_requests[0].model().name(), "");
-  for (int attempt : {1, 2}) {
-    const auto& selector = stub_->synthesize_requests[static_cast<size_t>(attempt)].model();
+  ASSERT_THAT(attempts(), SizeIs(3));
+  EXPECT_EQ(attempts()[0].request.model().name(), "");
+  for (size_t attempt : {1, 2}) {
+    const v1::ModelSelector selector = attempts()[attempt].request.model();
     EXPECT_EQ(selector.name(), "dancer");
     EXPECT_EQ(selector.version(), 1u);
   }
 }
 
 TEST_F(ConnectionTest, ModelThatIsNoLongerServedIsReported) {
-  stub_->streams = {Broken(), Refused(absl::NotFoundError("no version 1"))};
+  streams_ = {Broken(), Refused({grpc::StatusCode::NOT_FOUND, "no version 1"})};
   EXPECT_THAT(Synthesize([](const FollowerChunk&) { return absl::OkStatus(); }),
               StatusIs(absl::StatusCode::kAborted,
                        HasSubstr("broke after 2 frames and cannot be resumed: dancer@1")));
 }
 
 TEST_F(ConnectionTest, TheCallbackEndsTheCallWithItsOwnStatus) {
-  stub_->streams = {Good()};
+  streams_ = {Good()};
+  streams_[0].until_cancelled = true;
   int chunks = 0;
   // Not even a code that is otherwise retried.
   EXPECT_THAT(Synthesize([&](const FollowerChunk&) {
@@ -163,28 +227,32 @@ TEST_F(ConnectionTest, TheCallbackEndsTheCallWithItsOwnStatus) {
               }),
               StatusIs(absl::StatusCode::kUnavailable, "enough"));
   EXPECT_EQ(chunks, 1);
-  EXPECT_EQ(stub_->cancelled, 1);
 }
 
 TEST_F(ConnectionTest, CallsThatReadModelsAreRetried) {
-  v1::ListModelsResponse listed;
-  listed.add_models()->set_name("first");
-  listed.add_models()->set_name("second");
-  stub_->list_models = {absl::UnavailableError("loading"), listed};
-  const auto models = ConnectionImpl(stub_, options_, time_.Environment()).ListModels();
+  int calls = 0;
+  server_.service().on_list_models = [&](grpc::ServerContext*, v1::ListModelsResponse* response) {
+    if (calls++ == 0) return Away();
+    response->add_models()->set_name("first");
+    response->add_models()->set_name("second");
+    return grpc::Status::OK;
+  };
+  const auto models = Connect()->ListModels();
   ASSERT_THAT(models, IsOk());
   EXPECT_THAT(*models,
               ElementsAre(Field(&ModelInfo::name, "first"), Field(&ModelInfo::name, "second")));
-  v1::GetModelResponse response;
-  response.mutable_model()->set_name("dancer");
-  response.mutable_limits()->set_min_frames(2);
-  stub_->get_model = {absl::UnavailableError("loading"), response};
-  const auto details =
-      ConnectionImpl(stub_, options_, time_.Environment()).GetModel({"dancer", 2, ""});
+  server_.service().on_get_model = [&](const v1::GetModelRequest& request,
+                                       v1::GetModelResponse* response) {
+    if (calls++ == 2) return Away();
+    EXPECT_EQ(request.model().version(), 2u);
+    response->mutable_model()->set_name("dancer");
+    response->mutable_limits()->set_min_frames(2);
+    return grpc::Status::OK;
+  };
+  const auto details = Connect()->GetModel({"dancer", 2, ""});
   ASSERT_THAT(details, IsOk());
   EXPECT_EQ(details->model.name, "dancer");
   EXPECT_EQ(details->limits.min_frames, 2);
-  EXPECT_EQ(stub_->get_model_requests[1].model().version(), 2u);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_service.h"
-#include "tests/client/support/fake_stub.h"
+#include "tests/client/support/replies.h"
 #include "tests/support/matchers.h"
 
 namespace duet::client::internal {

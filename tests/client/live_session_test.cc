@@ -16,12 +16,12 @@
 #include "client/client.h"
 #include "client/internal/connect.h"
 #include "client/internal/live_session_impl.h"
-#include "client/internal/stub.h"
+#include "duet/v1/synthesis.grpc.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_service.h"
-#include "tests/client/support/fake_stub.h"
 #include "tests/client/support/live_mirror.h"
+#include "tests/client/support/replies.h"
 #include "tests/support/matchers.h"
 
 namespace duet::client {
@@ -255,6 +255,7 @@ TEST_F(LiveSessionTest, ADrainingServerIsLeftForAnother) {
 }
 
 TEST_F(LiveSessionTest, GivesUpWhenNoServerAnswers) {
+  options_.wait = absl::Milliseconds(200);
   // Connected before: a busy machine may take longer than the wait.
   const auto channel = internal::OpenChannel(options_);
   ASSERT_THAT(channel, IsOk());
@@ -266,9 +267,8 @@ TEST_F(LiveSessionTest, GivesUpWhenNoServerAnswers) {
     ended.Notify();
   };
   absl::StatusOr<std::unique_ptr<LiveSession>> session = internal::LiveSessionImpl::Start(
-      internal::MakeGrpcStub(*channel), request_, std::move(callbacks),
-      {options_.deadline, absl::Milliseconds(200), options_.server_address, options_.retry,
-       internal::SystemEnvironment()});
+      v1::MotionSynthesis::NewStub(*channel), request_, std::move(callbacks),
+      {options_, internal::SystemEnvironment()});
   ASSERT_THAT(session, IsOk());
   session_ = *std::move(session);
   ASSERT_THAT(Send(0, 10), IsOk());
@@ -323,9 +323,8 @@ TEST_F(LiveSessionTest, ASilentServerIsLeft) {
   const auto channel = internal::OpenChannel(options_);
   ASSERT_THAT(channel, IsOk());
   absl::StatusOr<std::unique_ptr<LiveSession>> session = internal::LiveSessionImpl::Start(
-      internal::MakeGrpcStub(*channel), request_, Callbacks(),
-      {options_.deadline, options_.wait, options_.server_address, options_.retry,
-       internal::SystemEnvironment(), absl::Seconds(1)});
+      v1::MotionSynthesis::NewStub(*channel), request_, Callbacks(),
+      {options_, internal::SystemEnvironment(), absl::Seconds(1)});
   ASSERT_THAT(session, IsOk());
   session_ = *std::move(session);
   ASSERT_THAT(Send(0, 40), IsOk());

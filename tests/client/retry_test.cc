@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/client/support/fake_stub.h"
+#include "tests/client/support/replies.h"
 #include "tests/support/matchers.h"
 
 namespace duet::client::internal {

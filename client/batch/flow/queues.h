@@ -94,11 +94,6 @@ class Queue {
     has_much_.notify_all();
     has_room_.notify_all();
   }
-  // Waits until no value is taken.
-  void WaitUntilNoneIsTaken() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    none_taken_.wait(lock, [this] { return taken_ == 0; });
-  }
 
  private:
   struct Priced {
@@ -109,14 +104,12 @@ class Queue {
   bool AllDone() const { return closed_ && values_.empty() && taken_ == 0; }
   void EndOne() {
     --taken_;
-    if (taken_ > 0) return;
-    none_taken_.notify_all();
     if (AllDone()) has_values_.notify_all();
   }
 
   const std::size_t capacity_;
   std::mutex mutex_;
-  std::condition_variable has_values_, has_much_, has_room_, none_taken_;
+  std::condition_variable has_values_, has_much_, has_room_;
   std::deque<Priced> values_;
   std::size_t cost_ = 0;
   std::size_t taken_ = 0;

@@ -17,7 +17,7 @@
 #include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
 #include "tests/client/cli/program_runner.h"
-#include "tests/client/support/fake_stub.h"
+#include "tests/client/support/replies.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/temporary_folder.h"

@@ -7,7 +7,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/cli/program_runner.h"
-#include "tests/client/support/fake_stub.h"
+#include "tests/client/support/replies.h"
 #include "tests/support/matchers.h"
 
 namespace duet::client::cli {

@@ -22,6 +22,7 @@ inline constexpr absl::Duration kLongestCall = absl::Seconds(60);
 class FakeService final : public v1::MotionSynthesis::Service {
  public:
   std::function<grpc::Status(grpc::ServerContext*, v1::ListModelsResponse*)> on_list_models;
+  std::function<grpc::Status(const v1::GetModelRequest&, v1::GetModelResponse*)> on_get_model;
   std::function<grpc::Status(grpc::ServerContext*, const v1::SynthesizeRequest&,
                              grpc::ServerWriter<v1::SynthesizeResponse>*)>
       on_synthesize;
@@ -33,6 +34,10 @@ class FakeService final : public v1::MotionSynthesis::Service {
   grpc::Status ListModels(grpc::ServerContext* context, const v1::ListModelsRequest*,
                           v1::ListModelsResponse* response) override {
     return on_list_models(context, response);
+  }
+  grpc::Status GetModel(grpc::ServerContext*, const v1::GetModelRequest* request,
+                        v1::GetModelResponse* response) override {
+    return on_get_model(*request, response);
   }
   grpc::Status Synthesize(grpc::ServerContext* context, const v1::SynthesizeRequest* request,
                           grpc::ServerWriter<v1::SynthesizeResponse>* writer) override {

@@ -1,94 +1,14 @@
-#include "tests/client/support/fake_stub.h"
+#include "tests/client/support/replies.h"
 
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "absl/strings/cord.h"
 #include "duet/rpc/v1/status.pb.h"
 #include "gtest/gtest.h"
 
 namespace duet::test {
-namespace {
-
-class ScriptedResponseStream final : public client::internal::ResponseStream {
- public:
-  ScriptedResponseStream(ScriptedStream script, int* cancelled)
-      : script_(std::move(script)), cancelled_(cancelled) {}
-
-  bool Read(v1::SynthesizeResponse* response) override {
-    if (stopped_ || next_ >= script_.responses.size()) return false;
-    *response = script_.responses[next_++];
-    return true;
-  }
-  void Cancel() override {
-    stopped_ = true;
-    ++*cancelled_;
-  }
-  absl::Status Finish() override {
-    return stopped_ ? absl::CancelledError("cancelled by the client") : script_.end;
-  }
-
- private:
-  ScriptedStream script_;
-  int* cancelled_;
-  size_t next_ = 0;
-  bool stopped_ = false;
-};
-
-}  // namespace
-
-absl::StatusOr<v1::ListModelsResponse> FakeStub::ListModels(
-    const client::internal::CallContext& context, const v1::ListModelsRequest&) {
-  contexts.push_back(context);
-  const size_t attempt = list_models_calls_++;
-  if (attempt < list_models.size()) return list_models[attempt];
-  ADD_FAILURE() << "ListModels: attempt " << attempt + 1 << " was not expected";
-  return absl::InternalError("not scripted");
-}
-
-absl::StatusOr<v1::GetModelResponse> FakeStub::GetModel(
-    const client::internal::CallContext& context, const v1::GetModelRequest& request) {
-  contexts.push_back(context);
-  get_model_requests.push_back(request);
-  if (get_model_requests.size() <= get_model.size()) {
-    return get_model[get_model_requests.size() - 1];
-  }
-  ADD_FAILURE() << "GetModel: attempt " << get_model_requests.size() << " was not expected";
-  return absl::InternalError("not scripted");
-}
-
-std::unique_ptr<client::internal::ResponseStream> FakeStub::Synthesize(
-    const client::internal::CallContext& context, const v1::SynthesizeRequest& request) {
-  contexts.push_back(context);
-  synthesize_requests.push_back(request);
-  const size_t attempt = synthesize_requests.size();
-  ScriptedStream script{{}, absl::InternalError("not scripted")};
-  if (attempt <= streams.size()) {
-    script = streams[attempt - 1];
-  } else {
-    ADD_FAILURE() << "Synthesize: attempt " << attempt << " was not expected";
-  }
-  return std::make_unique<ScriptedResponseStream>(std::move(script), &cancelled);
-}
-
-void FakeStub::Start(const client::internal::CallContext& context,
-                     const v1::SynthesizeRequest& request,
-                     std::unique_ptr<client::internal::StreamListener> listener) {
-  const std::unique_ptr<client::internal::ResponseStream> stream = Synthesize(context, request);
-  for (v1::SynthesizeResponse response; stream->Read(&response);) {
-    if (!listener->OnMessage(response)) stream->Cancel();
-  }
-  listener->OnEnd(stream->Finish());
-}
-
-std::unique_ptr<client::internal::LiveStream> FakeStub::SynthesizeLive(
-    const client::internal::CallContext&) {
-  ADD_FAILURE() << "SynthesizeLive was not expected";
-  return nullptr;
-}
-
 client::internal::RetryEnvironment FakeTime::Environment() {
   return {[this] { return now; },
           [this](absl::Duration wait) {
