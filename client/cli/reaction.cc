@@ -10,6 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "client/cli/flags.h"
+#include "client/internal/proto_conversion.h"
 #include "client/model_skeleton.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/base/file.h"
@@ -70,14 +71,6 @@ motion::Vec3 FromProto(const Point& point) {
   return {point.x(), point.y(), point.z()};
 }
 
-std::vector<motion::Vec3> ToPoints(const google::protobuf::RepeatedField<float>& positions) {
-  std::vector<motion::Vec3> points;
-  for (int i = 0; i + 2 < positions.size(); i += 3) {
-    points.push_back({positions[i], positions[i + 1], positions[i + 2]});
-  }
-  return points;
-}
-
 std::vector<ClassWeight> FromProto(const v1::LabelVector& labels) {
   std::vector<ClassWeight> weights;
   for (const v1::ClassWeight& weight : labels.weights()) {
@@ -135,7 +128,7 @@ absl::StatusOr<SynthesisRequest> FromProto(const v1::SynthesizeRequest& in) {
   if (in.follower_start().has_root_position()) {
     out.follower_start = FromProto(in.follower_start().root_position());
   } else if (in.follower_start().has_pose()) {
-    out.follower_start = ToPoints(in.follower_start().pose().positions());
+    out.follower_start = internal::ToPoints(in.follower_start().pose().positions());
   }
   return out;
 }

@@ -44,35 +44,9 @@ v1::SynthesizeLiveRequest FramesMessage(int first_frame, int frame_count,
   return message;
 }
 
-// Requires whole frames.
-motion::Poses ToPoses(const google::protobuf::RepeatedField<float>& values, int joints) {
-  std::vector<motion::Vec3> positions(static_cast<size_t>(values.size()) / 3);
-  const float* value = values.data();
-  for (motion::Vec3& position : positions) {
-    position = {value[0], value[1], value[2]};
-    value += 3;
-  }
-  return {joints, std::move(positions)};
-}
-
 bool AllFinite(const google::protobuf::RepeatedField<float>& values) {
   return std::all_of(values.begin(), values.end(),
                      [](float value) { return std::isfinite(value); });
-}
-
-LiveInfo ToInfo(const v1::LiveHeader& header) {
-  LiveInfo info;
-  info.model_name = header.model_name();
-  info.model_version = static_cast<int>(header.model_version());
-  info.interaction_classes = {header.interaction_classes().begin(),
-                              header.interaction_classes().end()};
-  info.seed = header.seed();
-  info.variety = header.variety();
-  info.candidates = std::max(1, static_cast<int>(header.candidates()));
-  info.cleaned_up = header.clean_up() == v1::CLEAN_UP_ON;
-  info.delay_frames = static_cast<int>(header.delay_frames());
-  info.request_id = header.request_id();
-  return info;
 }
 
 std::optional<LiveNotice::Kind> ToKind(v1::LiveNoticeKind kind) {
@@ -185,31 +159,17 @@ absl::StatusOr<std::optional<motion::JointRotations>> LiveRotations::Read(
 
 absl::StatusOr<LiveState> LiveState::Create(LiveRequest request) {
   v1::LiveStart start;
-  absl::StatusOr<v1::ModelSelector> model = ToProto(request.model);
-  if (!model.ok()) return model.status();
-  *start.mutable_model() = *std::move(model);
-  if (request.joint_names.empty()) {
-    return absl::InvalidArgumentError("leader.joint_names: expected the model's joints, got none");
-  }
+  absl::Status status =
+      FillFormat(request.joint_names, request.frame_rate_hz, start.mutable_leader());
+  if (status.ok()) status = FillReaction(request, &start);
+  if (!status.ok()) return status;
   if (request.delay_frames < 0 || request.plan_frames < 0) {
     return absl::InvalidArgumentError(
         absl::StrCat("delay_frames and plan_frames: expected 0 or more, got ", request.delay_frames,
                      " and ", request.plan_frames));
   }
-  absl::Status status = FillLabels(request.weights, request.keyframes, &start);
-  if (status.ok()) status = FillReaction(request, &start);
-  if (!status.ok()) return status;
-  v1::Motion* leader = start.mutable_leader();
-  leader->mutable_joint_names()->Assign(request.joint_names.begin(), request.joint_names.end());
-  leader->set_frame_rate_hz(request.frame_rate_hz);
-  leader->set_unit(v1::LENGTH_UNIT_METRES);
-  leader->set_up_axis(v1::UP_AXIS_Y_UP);
-  if (request.follower_start.has_value()) {
-    Fill(*request.follower_start, start.mutable_follower_start());
-  }
   start.set_delay_frames(static_cast<uint32_t>(request.delay_frames));
   start.set_plan_frames(static_cast<uint32_t>(request.plan_frames));
-  start.set_reply_rotations(request.rotations);
   return LiveState(std::move(request), std::move(start));
 }
 
@@ -388,18 +348,8 @@ absl::StatusOr<LiveAnswer> LiveState::Accept(const v1::SynthesizeLiveResponse& r
 
 absl::Status LiveState::AcceptHeader(const v1::LiveHeader& header) {
   if (is_open_) return Malformed("a second header");
-  if (!std::equal(header.joint_names().begin(), header.joint_names().end(),
-                  request_.joint_names.begin(), request_.joint_names.end())) {
-    return Malformed("header.joint_names differ from the leader's");
-  }
-  if (header.frame_rate_hz() != request_.frame_rate_hz) {
-    return Malformed("header.frame_rate_hz: expected the leader's ", request_.frame_rate_hz,
-                     ", got ", header.frame_rate_hz());
-  }
-  if (header.unit() != v1::LENGTH_UNIT_METRES || header.up_axis() != v1::UP_AXIS_Y_UP) {
-    return Malformed("header.unit and up_axis: expected metres, y up, got ",
-                     v1::LengthUnit_Name(header.unit()), ", ", v1::UpAxis_Name(header.up_axis()));
-  }
+  const absl::Status echo = CheckHeader(header, request_.joint_names, request_.frame_rate_hz);
+  if (!echo.ok()) return Malformed(echo.message());
   if (header.first_frame() != static_cast<uint32_t>(next_frame_)) {
     return Malformed("header.first_frame: expected ", next_frame_, ", got ", header.first_frame());
   }
@@ -412,7 +362,8 @@ absl::Status LiveState::AcceptHeader(const v1::LiveHeader& header) {
   if (info_.has_value()) {
     ++summary_.resumed;
   } else {
-    info_ = ToInfo(header);
+    info_.emplace().delay_frames = static_cast<int>(header.delay_frames());
+    ReadHeader(header, &*info_);
   }
   return absl::OkStatus();
 }
@@ -456,8 +407,8 @@ absl::StatusOr<LiveAnswer> LiveState::AcceptFrames(const v1::FollowerFrames& fra
   if (!status.ok()) return status;
   const int joints = static_cast<int>(request_.joint_names.size());
   LiveFrames out;
-  out.poses = ToPoses(frames.positions(), joints);
-  out.plan = ToPoses(frames.plan_positions(), joints);
+  out.poses = motion::Poses(joints, ToPoints(frames.positions()));
+  out.plan = motion::Poses(joints, ToPoints(frames.plan_positions()));
   out.leader_frame = static_cast<int>(frames.leader_frame());
   out.capture_seconds = CaptureSeconds(frames);
   out.server_time = absl::Seconds(frames.server_seconds());

@@ -16,9 +16,8 @@ namespace duet::client::internal {
 namespace {
 
 absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
-  if (clip.joint_names.empty()) {
-    return absl::InvalidArgumentError("leader.joint_names: expected the model's joints, got none");
-  }
+  absl::Status status = FillFormat(clip.joint_names, clip.frame_rate_hz, leader);
+  if (!status.ok()) return status;
   if (!clip.poses.empty() && clip.poses.joint_count() != clip.joint_count()) {
     return absl::InvalidArgumentError(
         absl::StrCat("leader.positions: expected poses of the ", clip.joint_count(),
@@ -36,10 +35,6 @@ absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
                                                    kMaxPoints, " points, got ",
                                                    clip.poses.all().size()));
   }
-  leader->mutable_joint_names()->Assign(clip.joint_names.begin(), clip.joint_names.end());
-  leader->set_frame_rate_hz(clip.frame_rate_hz);
-  leader->set_unit(v1::LENGTH_UNIT_METRES);
-  leader->set_up_axis(v1::UP_AXIS_Y_UP);
   leader->set_frame_count(static_cast<uint32_t>(clip.frame_count()));
   AppendPositions(clip.poses.all(), leader->mutable_positions());
   return absl::OkStatus();
@@ -56,9 +51,7 @@ absl::Status Fill(const JointConstraint& constraint, int index, v1::JointConstra
   }
   out->set_joint_name(constraint.joint);
   out->set_frame(static_cast<uint32_t>(constraint.frame));
-  out->mutable_position()->set_x(constraint.position.x);
-  out->mutable_position()->set_y(constraint.position.y);
-  out->mutable_position()->set_z(constraint.position.z);
+  SetPoint(constraint.position, out->mutable_position());
   out->set_softness(constraint.softness);
   return absl::OkStatus();
 }
@@ -117,17 +110,9 @@ absl::StatusOr<v1::ModelSelector> ToProto(const ModelChoice& choice) {
 
 absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   v1::SynthesizeRequest out;
-  absl::StatusOr<v1::ModelSelector> model = ToProto(request.model);
-  if (!model.ok()) return model.status();
-  *out.mutable_model() = *std::move(model);
   absl::Status status = FillLeader(request.leader, out.mutable_leader());
-  if (status.ok()) status = FillLabels(request.weights, request.keyframes, &out);
   if (status.ok()) status = FillReaction(request, &out);
   if (!status.ok()) return status;
-  if (request.follower_start.has_value()) {
-    Fill(*request.follower_start, out.mutable_follower_start());
-  }
-  out.set_reply_rotations(request.rotations);
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {
     if (*request.chunk_frames < 1) {
@@ -204,6 +189,18 @@ MotionGrade FromProto(const v1::MotionGrade& grade) {
   return out;
 }
 
+absl::Status FillFormat(const std::vector<std::string>& joint_names, double frame_rate_hz,
+                        v1::Motion* leader) {
+  if (joint_names.empty()) {
+    return absl::InvalidArgumentError("leader.joint_names: expected the model's joints, got none");
+  }
+  leader->mutable_joint_names()->Assign(joint_names.begin(), joint_names.end());
+  leader->set_frame_rate_hz(frame_rate_hz);
+  leader->set_unit(v1::LENGTH_UNIT_METRES);
+  leader->set_up_axis(v1::UP_AXIS_Y_UP);
+  return absl::OkStatus();
+}
+
 void AppendPositions(absl::Span<const motion::Vec3> points,
                      google::protobuf::RepeatedField<float>* positions) {
   positions->Reserve(positions->size() + static_cast<int>(points.size()) * 3);
@@ -224,19 +221,11 @@ void Fill(const std::vector<ClassWeight>& weights, v1::LabelVector* labels) {
 
 void Fill(const FollowerStart& start, v1::FollowerStart* out) {
   if (const motion::Vec3* root = std::get_if<motion::Vec3>(&start)) {
-    out->mutable_root_position()->set_x(root->x);
-    out->mutable_root_position()->set_y(root->y);
-    out->mutable_root_position()->set_z(root->z);
+    SetPoint(*root, out->mutable_root_position());
   } else {
     AppendPositions(std::get<std::vector<motion::Vec3>>(start),
                     out->mutable_pose()->mutable_positions());
   }
-}
-
-void Fill(const motion::Vec3& direction, v1::Direction* out) {
-  out->set_x(direction.x);
-  out->set_y(direction.y);
-  out->set_z(direction.z);
 }
 
 v1::CleanUp ToProto(std::optional<bool> clean_up) {
@@ -259,6 +248,16 @@ absl::Status CheckRequestId(const std::string& request_id) {
   const absl::Status status = base::CheckRequestId(request_id);
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat("request_id: ", status.message()));
+}
+
+std::vector<motion::Vec3> ToPoints(const google::protobuf::RepeatedField<float>& positions) {
+  std::vector<motion::Vec3> points(static_cast<std::size_t>(positions.size()) / 3);
+  const float* value = positions.data();
+  for (motion::Vec3& point : points) {
+    point = {value[0], value[1], value[2]};
+    value += 3;
+  }
+  return points;
 }
 
 absl::StatusOr<std::vector<motion::RestJoint>> ReadRig(

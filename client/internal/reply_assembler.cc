@@ -44,18 +44,8 @@ absl::Status ReplyAssembler::Accept(const v1::SynthesizeResponse& response) {
 
 absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
   if (header_.has_value()) return Malformed("a second header");
-  if (!std::equal(header.joint_names().begin(), header.joint_names().end(),
-                  leader_.joint_names.begin(), leader_.joint_names.end())) {
-    return Malformed("header.joint_names differ from the leader's");
-  }
-  if (header.frame_rate_hz() != leader_.frame_rate_hz) {
-    return Malformed("header.frame_rate_hz: expected the leader's ", leader_.frame_rate_hz,
-                     ", got ", header.frame_rate_hz());
-  }
-  if (header.unit() != v1::LENGTH_UNIT_METRES || header.up_axis() != v1::UP_AXIS_Y_UP) {
-    return Malformed("header.unit and up_axis: expected metres, y up, got ",
-                     v1::LengthUnit_Name(header.unit()), ", ", v1::UpAxis_Name(header.up_axis()));
-  }
+  const absl::Status echo = CheckHeader(header, leader_.joint_names, leader_.frame_rate_hz);
+  if (!echo.ok()) return Malformed(echo.message());
   if (header.frame_count() != static_cast<uint32_t>(leader_.frame_count())) {
     return Malformed("header.frame_count: expected the leader's ", leader_.frame_count(), ", got ",
                      header.frame_count());
@@ -105,12 +95,7 @@ absl::Status ReplyAssembler::CheckChunk(const v1::MotionChunk& chunk) const {
 absl::Status ReplyAssembler::AcceptChunk(const v1::MotionChunk& chunk) {
   absl::Status status = CheckChunk(chunk);
   if (!status.ok()) return status;
-  motion::Poses frames(static_cast<int>(chunk.frame_count()), leader_.joint_count());
-  const float* value = chunk.positions().data();
-  for (motion::Vec3& position : frames.all()) {
-    position = {value[0], value[1], value[2]};
-    value += 3;
-  }
+  const motion::Poses frames(leader_.joint_count(), ToPoints(chunk.positions()));
   follower_.Append(frames.all());
   AppendRotations(chunk.rotations(), &rotations_.rotations);
   received_ += frames.frame_count();
@@ -173,16 +158,7 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.pair.follower.joint_names = leader_.joint_names;
   result.pair.follower.frame_rate_hz = leader_.frame_rate_hz;
   result.pair.follower.poses = std::move(follower_);
-  result.model_name = header_->model_name();
-  result.model_version = static_cast<int>(header_->model_version());
-  result.interaction_classes = {header_->interaction_classes().begin(),
-                                header_->interaction_classes().end()};
-  result.request_id = header_->request_id();
-  result.seed = header_->seed();
-  result.variety = header_->variety();
-  // Servers without candidates draw one sample and do not set the field.
-  result.candidates = std::max(1, static_cast<int>(header_->candidates()));
-  result.cleaned_up = header_->clean_up() == v1::CLEAN_UP_ON;
+  ReadHeader(*header_, &result);
   result.engine = header_->engine();
   result.server_version = header_->server_version();
   if (summary_->has_unfamiliarity()) result.unfamiliarity = summary_->unfamiliarity();

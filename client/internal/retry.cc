@@ -1,6 +1,7 @@
 #include "client/internal/retry.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "absl/random/random.h"
@@ -99,7 +100,15 @@ bool IsUnreachable(const AttemptEnd& end) {
 
 absl::Status Explained(const AttemptEnd& end, absl::string_view server_address) {
   if (!HasNoServer(end)) return end.status;
-  return absl::Status(end.status.code(), DescribeUnreachable(server_address, end.status.message()));
+  const absl::string_view message = end.status.message();
+  const auto cause = std::find_if(
+      std::begin(kCauses), std::end(kCauses),
+      [message](const Cause& known) { return absl::StrContains(message, known.sign); });
+  return absl::Status(
+      end.status.code(),
+      absl::StrCat("the server at ", server_address, " ",
+                   cause == std::end(kCauses) ? absl::StrCat("cannot be reached: ", message)
+                                              : std::string(cause->text)));
 }
 
 absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
@@ -130,14 +139,6 @@ absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environm
     if (options.on_wait) options.on_wait(status, wait);
     environment.sleep(wait);
   }
-}
-
-std::string DescribeUnreachable(absl::string_view address, absl::string_view message) {
-  const std::string server = absl::StrCat("the server at ", address, " ");
-  for (const Cause& cause : kCauses) {
-    if (absl::StrContains(message, cause.sign)) return absl::StrCat(server, cause.text);
-  }
-  return absl::StrCat(server, "cannot be reached: ", message);
 }
 
 }  // namespace duet::client::internal

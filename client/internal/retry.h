@@ -60,8 +60,10 @@ struct AttemptEnd {
 // UNAVAILABLE from a Duet server. A server whose health service reports NOT_SERVING is reachable.
 bool IsUnreachable(const AttemptEnd& end);
 
-// Returns the status of an attempt, with DescribeUnreachable in place of gRPC's own message if gRPC
-// had no server for it.
+// Returns the status of an attempt. If gRPC had no server for it, the message is a sentence that
+// says why, such as "the server at localhost:50051 is not running: it refused the connection".
+// gRPC's own message, which names sockets and system calls, is part of the sentence only if the
+// cause is unknown. The Python client has the same sentences.
 absl::Status Explained(const AttemptEnd& end, absl::string_view server_address);
 
 // Calls `attempt` until it succeeds, fails with a status that is not retryable, or a limit is
@@ -70,12 +72,6 @@ absl::Status Explained(const AttemptEnd& end, absl::string_view server_address);
 absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
                    Priority priority, const RetryLimits& limits,
                    absl::FunctionRef<AttemptEnd()> attempt);
-
-// Returns a sentence that says why gRPC had no server for a call to `address`, such as "the server
-// at localhost:50051 is not running: it refused the connection". `message` is gRPC's own, which
-// names sockets and system calls; it is part of the sentence only if its cause is unknown. The
-// Python client has the same sentences (duet_motion/_unreachable.py).
-std::string DescribeUnreachable(absl::string_view address, absl::string_view message);
 
 }  // namespace duet::client::internal
 

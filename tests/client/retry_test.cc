@@ -84,7 +84,7 @@ TEST_F(RetryTest, UnreachableServerIsDescribedInWordsAlsoAfterTheLastAttempt) {
   EXPECT_THAT(told, ElementsAre(words));
 }
 
-TEST(DescribeUnreachableTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
+TEST(ExplainedTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
   const std::string all = "failed to connect to all addresses; last error: UNKNOWN: ";
   // As reported by the policy that distributes calls over several servers.
   const std::string several = "connections to all backends failing; last error: UNAVAILABLE: ";
@@ -108,7 +108,9 @@ TEST(DescribeUnreachableTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
       {several + "backend unhealthy", "is not ready: it loads its models, or it shuts down"},
       {"odd", "cannot be reached: odd"}};
   for (const auto& [message, cause] : causes) {
-    EXPECT_EQ(DescribeUnreachable("a:1", message), absl::StrCat("the server at a:1 ", cause));
+    EXPECT_THAT(
+        Explained(absl::UnavailableError(message), "a:1"),
+        StatusIs(absl::StatusCode::kUnavailable, absl::StrCat("the server at a:1 ", cause)));
   }
 }
 
