@@ -122,7 +122,6 @@ ordered_json WithAnswer(const Item& item, const char* state, const Answer& answe
 }  // namespace
 
 Meaning MeaningOf(const absl::Status& status) {
-  if (status.ok()) return Meaning::kAnswer;
   switch (status.code()) {
     case absl::StatusCode::kUnavailable:
       return Meaning::kWait;
@@ -140,7 +139,7 @@ Meaning MeaningOf(const absl::Status& status) {
 }
 
 flow::CallEnd CallEndOf(const absl::Status& status) {
-  if (MeaningOf(status) != Meaning::kWait) return flow::CallEnd::kAnswered;
+  if (status.ok() || MeaningOf(status) != Meaning::kWait) return flow::CallEnd::kAnswered;
   return status.code() == absl::StatusCode::kUnavailable ? flow::CallEnd::kAway
                                                          : flow::CallEnd::kRefused;
 }

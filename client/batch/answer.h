@@ -20,9 +20,8 @@
 
 namespace duet::client::batch {
 
-// What the status of a call means for its item.
+// What the error of a call means for its item.
 enum class Meaning {
-  kAnswer,    // the call returned a follower
   kWait,      // the server is full or away: the item is retried later
   kTryAgain,  // a temporary failure of this call
   kRefused,   // the server will always reject the item

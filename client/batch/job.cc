@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kAttempts = 3;  // of a call that fails temporarily
 constexpr size_t kQueuedItems = 64;
+// Askers beyond the calls in flight, which read leaders and encode answers meanwhile.
+constexpr int kMoreAskers = 4;
 constexpr size_t kUnwrittenBytes = size_t{64} << 20;
 // How long items are collected before they are flushed to disk together. A flush costs as much as
 // several items, and an item that is lost before the flush is requested again.
@@ -74,81 +76,81 @@ absl::Status Job::Feed() {
 }
 
 void Job::AskUntilDone() {
-  while (std::optional<Work> work = queue_.Take()) Ask(*std::move(work));
+  while (std::optional<Work> work = queue_.Take()) {
+    bool again = true;
+    while (again) again = Ask(&*work);
+  }
 }
 
-void Job::Ask(Work work) {
-  const auto model = static_cast<size_t>(work.item.model);
+// Makes one call for an item. Returns whether it needs another one.
+bool Job::Ask(Work* work) {
+  const auto model = static_cast<size_t>(work->item.model);
   const absl::StatusOr<LoadedLeader>& leader =
-      work.leader->Get(parts_.recipe.input, parts_.skeletons[model]);
+      work->leader->Get(parts_.recipe.input, parts_.skeletons[model]);
   if (!leader.ok()) {
-    Fail(work.item, leader.status());
-    return queue_.Done();
+    Fail(work->item, leader.status());
+    return false;
   }
-  const absl::Status unchanged = parts_.survey->CheckLeader(*work.item.leader, leader->sha256);
+  const absl::Status unchanged = parts_.survey->CheckLeader(*work->item.leader, leader->sha256);
   if (!unchanged.ok()) {
     StopWith(unchanged);
-    return queue_.Done();
+    return false;
   }
   const SynthesisRequest request =
-      ToRequest(work.item, parts_.recipe, parts_.models[model], *leader, work.retry);
+      ToRequest(work->item, parts_.recipe, parts_.models[model], *leader, work->retry);
   const std::optional<int64_t> call = gate_.Start();
   if (!call.has_value()) {
-    queue_.Done();
-    return queue_.Stop();  // no more calls start
+    queue_.Stop();  // no more calls start
+    return false;
   }
   absl::StatusOr<SynthesisResult> result = parts_.client.Synthesize(request);
   gate_.Finish(*call, CallEndOf(result.status()), DelayOf(result.status()));
-  Receive(std::move(work), std::move(result));
+  return result.ok() ? Judge(*std::move(result), work) : HandleFailure(result.status(), work);
 }
 
-// Finishes the item, or puts it back for another attempt.
-void Job::Receive(Work work, absl::StatusOr<SynthesisResult> result) {
-  const absl::Status status = result.status();
+bool Job::HandleFailure(const absl::Status& status, Work* work) {
   switch (MeaningOf(status)) {
-    case Meaning::kAnswer:
-      if (const absl::Status same =
-              parts_.survey->CheckMaker(ModelText(*result), MadeByOf(*result));
-          !same.ok()) {
-        StopWith(same);
-        break;
-      }
-      result->pair = AtOutputRate(std::move(result->pair), parts_.recipe.output);
-      return Judge(std::move(work), *result);
     case Meaning::kWait:
-      return queue_.PutBack(std::move(work));
+      return true;
     case Meaning::kTryAgain:
-      if (++work.attempts < kAttempts) return queue_.PutBack(std::move(work));
-      FailForNow(work.item, status);
-      break;
+      if (++work->attempts < kAttempts) return true;
+      FailForNow(work->item, status);
+      return false;
     case Meaning::kRefused:
-      Fail(work.item, status);
-      break;
+      Fail(work->item, status);
+      return false;
     case Meaning::kStop:
       StopWith(status);
-      break;
+      return false;
   }
-  queue_.Done();
+  return false;
 }
 
-void Job::Judge(Work work, const SynthesisResult& result) {
-  const auto model = static_cast<size_t>(work.item.model);
+// Settles an item that has an answer, unless it needs another one.
+bool Job::Judge(SynthesisResult result, Work* work) {
+  const absl::Status same = parts_.survey->CheckMaker(ModelText(result), MadeByOf(result));
+  if (!same.ok()) {
+    StopWith(same);
+    return false;
+  }
+  result.pair = AtOutputRate(std::move(result.pair), parts_.recipe.output);
+  const auto model = static_cast<size_t>(work->item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
-  const v1::QualityFilter& filter = parts_.recipe.filter;
-  const Answer answer{result, *work.leader->Get(parts_.recipe.input, skeleton),
+  const Answer answer{result, *work->leader->Get(parts_.recipe.input, skeleton),
                       Measure(result, skeleton, parts_.recipe.input.up), skeleton_indices_[model],
-                      work.retry};
+                      work->retry};
+  const v1::QualityFilter& filter = parts_.recipe.filter;
   const std::vector<std::string> reasons = WhyRejected(filter, answer.quality);
   if (reasons.empty()) {
-    Keep(work.item, answer);
-  } else if (parts_.models[model].samples &&
-             work.retry < static_cast<int>(filter.retries_per_item())) {
-    ++work.retry;
-    return queue_.PutBack(std::move(work));
-  } else {
-    Settle({work.item, kRejected, Line(RejectedRecord(work.item, answer, reasons)), {}});
+    Keep(work->item, answer);
+    return false;
   }
-  queue_.Done();
+  if (parts_.models[model].samples && work->retry < static_cast<int>(filter.retries_per_item())) {
+    ++work->retry;
+    return true;
+  }
+  Settle({work->item, kRejected, Line(RejectedRecord(work->item, answer, reasons)), {}});
+  return false;
 }
 
 void Job::Keep(const Item& item, const Answer& answer) {
@@ -207,7 +209,7 @@ absl::Status Job::Write(const std::vector<Settled>& all, FileGroup* files, Journ
 absl::Status Job::RunThreads(JournalWriter* writer) {
   std::thread on_disk([this, writer] { WriteUntilClosed(writer); });
   std::vector<std::thread> askers;
-  for (int i = 0; i < options_.calls.max_in_flight; ++i) {
+  for (int i = 0; i < options_.calls.max_in_flight + kMoreAskers; ++i) {
     askers.emplace_back([this] { AskUntilDone(); });
   }
   const absl::Status fed = Feed();

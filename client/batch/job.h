@@ -57,7 +57,7 @@ struct JobReport {
 // One run of a batch: requests every item of a plan that is not settled yet, stores the answers,
 // and writes the index. Reading, calls and writing overlap. An item passes from the feeder (reads
 // the plan) to an asker (reads the leader, calls the server, judges the answer, encodes its files)
-// and to the writer, which writes many items to disk at once. There is an asker for each call that
+// and to the writer, which writes many items to disk at once. There are more askers than calls that
 // may be in flight.
 //
 // An item is settled when its files and then its journal record are on disk. Whenever the process
@@ -102,9 +102,9 @@ class Job {
 
   absl::Status Feed();
   void AskUntilDone();
-  void Ask(Work work);
-  void Receive(Work work, absl::StatusOr<SynthesisResult> result);
-  void Judge(Work work, const SynthesisResult& result);
+  bool Ask(Work* work);
+  bool HandleFailure(const absl::Status& status, Work* work);
+  bool Judge(SynthesisResult result, Work* work);
   void Keep(const Item& item, const Answer& answer);
   void Fail(const Item& item, const absl::Status& error);
   void FailForNow(const Item& item, const absl::Status& error);

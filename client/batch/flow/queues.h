@@ -12,8 +12,7 @@
 
 namespace duet::client::batch::flow {
 
-// Passes values between threads. A value that was taken is either done or put back, and the queue
-// ends when all values are done, not when it is empty, because values may be put back.
+// Passes values between threads.
 //
 // Threads: safe to call concurrently.
 template <typename Value>
@@ -35,38 +34,24 @@ class Queue {
     return true;
   }
 
-  // Puts a taken value back, before all others. Never blocks.
-  void PutBack(Value value) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!stopped_) values_.push_front({std::move(value), 0});
-    EndOne();
-    has_values_.notify_one();
-  }
-  // A taken value is done.
-  void Done() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    EndOne();
-  }
-
-  // nullopt after Stop, and after Close when all values are done.
+  // nullopt after Stop, and after Close when all values are taken.
   std::optional<Value> Take() {
     std::unique_lock<std::mutex> lock(mutex_);
-    has_values_.wait(lock, [this] { return stopped_ || !values_.empty() || AllDone(); });
+    has_values_.wait(lock, [this] { return stopped_ || closed_ || !values_.empty(); });
     if (stopped_ || values_.empty()) return std::nullopt;
     std::optional<Value> value(std::move(values_.front().value));
     cost_ -= values_.front().cost;
     values_.pop_front();
-    ++taken_;
     has_room_.notify_one();
     return value;
   }
 
-  // All values of the next `time`, at least one, which count as done. Returns earlier if the queue
-  // is full or closed. Empty when Take would return nullopt.
+  // All values of the next `time`, at least one. Returns earlier if the queue is full or closed.
+  // Empty when Take would return nullopt.
   std::vector<Value> Gather(std::chrono::nanoseconds time) {
     std::unique_lock<std::mutex> lock(mutex_);
     has_much_.wait_for(lock, time, [this] { return stopped_ || closed_ || HasMuch(); });
-    has_values_.wait(lock, [this] { return stopped_ || !values_.empty() || AllDone(); });
+    has_values_.wait(lock, [this] { return stopped_ || closed_ || !values_.empty(); });
     std::vector<Value> all;
     if (stopped_) return all;
     all.reserve(values_.size());
@@ -101,18 +86,12 @@ class Queue {
     std::size_t cost;
   };
   bool HasMuch() const { return cost_ > capacity_ / 2; }
-  bool AllDone() const { return closed_ && values_.empty() && taken_ == 0; }
-  void EndOne() {
-    --taken_;
-    if (AllDone()) has_values_.notify_all();
-  }
 
   const std::size_t capacity_;
   std::mutex mutex_;
   std::condition_variable has_values_, has_much_, has_room_;
   std::deque<Priced> values_;
   std::size_t cost_ = 0;
-  std::size_t taken_ = 0;
   bool closed_ = false;
   bool stopped_ = false;
 };
