@@ -205,7 +205,7 @@ absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const SetSour
                                      int64_t planned, const JobFolder& folder) {
   IndexWriter writer(folder);
   absl::Status status =
-      journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry.record); });
+      journal.ForEach([&writer](int64_t, const std::string& text) { return writer.Add(text); });
   if (!status.ok()) return status;
   return writer.Finish(source, planned);
 }

@@ -85,10 +85,10 @@ absl::Status Take(const JobFolder& shard, const JobFolder& folder, int64_t* item
   JournalWriter journal;
   absl::Status status = journal.Open(folder.journal(), known->size());
   if (!status.ok()) return status;
-  status = made->ForEach([&](const JournalEntry& entry) {
-    const absl::StatusOr<v1::IndexEntry> record = ParseRecord(entry.record);
+  status = made->ForEach([&](int64_t item, const std::string& text) {
+    const absl::StatusOr<v1::IndexEntry> record = ParseRecord(text);
     if (!record.ok()) return absl::OkStatus();  // the run requests it again
-    journal.Add(entry.item, entry.record);
+    journal.Add(item, text);
     ++*items;
     return MoveFiles(shard.out(), folder.out(), *record);
   });

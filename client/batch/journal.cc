@@ -79,29 +79,29 @@ bool JournalReader::Has(int64_t item) const {
   return item < end() && offsets_[static_cast<size_t>(item)] != 0;
 }
 
-absl::StatusOr<JournalEntry> JournalReader::Read(int64_t item) const {
+absl::StatusOr<std::string> JournalReader::Read(int64_t item) const {
   std::ifstream file(path_, std::ios::binary);
   return ReadFrom(&file, item);
 }
 
-absl::StatusOr<JournalEntry> JournalReader::ReadFrom(std::istream* file, int64_t item) const {
+absl::StatusOr<std::string> JournalReader::ReadFrom(std::istream* file, int64_t item) const {
   file->seekg(static_cast<std::streamoff>(offsets_[static_cast<size_t>(item)] - 1));
   std::string line;
   ParsedLine parsed;
   if (std::getline(*file, line) && ParseLine(line, &parsed) && parsed.item == item) {
-    return JournalEntry{item, std::string(parsed.record)};
+    return std::string(parsed.record);
   }
   return absl::DataLossError(absl::StrCat(path_.string(), ": changed while read"));
 }
 
 absl::Status JournalReader::ForEach(
-    const std::function<absl::Status(const JournalEntry&)>& visit) const {
+    const std::function<absl::Status(int64_t item, const std::string& record)>& visit) const {
   std::ifstream file(path_, std::ios::binary);
   for (int64_t item = 0; item < end(); ++item) {
     if (!Has(item)) continue;
-    const absl::StatusOr<JournalEntry> entry = ReadFrom(&file, item);
-    if (!entry.ok()) return entry.status();
-    absl::Status status = visit(*entry);
+    const absl::StatusOr<std::string> record = ReadFrom(&file, item);
+    if (!record.ok()) return record.status();
+    absl::Status status = visit(item, *record);
     if (!status.ok()) return status;
   }
   return absl::OkStatus();

@@ -26,11 +26,6 @@ namespace duet::client::batch {
 // takes half a GiB of memory.
 inline constexpr int64_t kMaxItems = int64_t{1} << 26;
 
-struct JournalEntry {
-  int64_t item = 0;
-  std::string record;
-};
-
 // A snapshot of the journal. Takes 8 bytes of memory for each item.
 //
 // Threads: const methods are safe to call concurrently.
@@ -42,9 +37,10 @@ class JournalReader {
 
   bool Has(int64_t item) const;
   // The last record of an item. Requires Has(item).
-  absl::StatusOr<JournalEntry> Read(int64_t item) const;
-  // Visits every record, in the order of the items. Stops at the first error and returns it.
-  absl::Status ForEach(const std::function<absl::Status(const JournalEntry&)>& visit) const;
+  absl::StatusOr<std::string> Read(int64_t item) const;
+  // Visits every item and its record, in their order. Stops at the first error and returns it.
+  absl::Status ForEach(
+      const std::function<absl::Status(int64_t item, const std::string& record)>& visit) const;
 
   // The number after the largest item number, and the number of items with a record.
   int64_t end() const { return static_cast<int64_t>(offsets_.size()); }
@@ -55,7 +51,7 @@ class JournalReader {
  private:
   explicit JournalReader(std::filesystem::path path) : path_(std::move(path)) {}
   absl::Status Load(std::istream* file);
-  absl::StatusOr<JournalEntry> ReadFrom(std::istream* file, int64_t item) const;
+  absl::StatusOr<std::string> ReadFrom(std::istream* file, int64_t item) const;
 
   std::filesystem::path path_;
   std::vector<uint64_t> offsets_;  // of items' lines, plus 1; 0: none

@@ -88,9 +88,9 @@ absl::StatusOr<std::unique_ptr<Survey>> Survey::Open(const JobFolder& folder,
 
 absl::Status Survey::Add(const Item& item) {
   if (!journal_.Has(item.number)) return absl::OkStatus();
-  const absl::StatusOr<JournalEntry> entry = journal_.Read(item.number);
-  if (!entry.ok()) return entry.status();
-  const absl::StatusOr<v1::IndexEntry> record = ParseRecord(entry->record);
+  const absl::StatusOr<std::string> text = journal_.Read(item.number);
+  if (!text.ok()) return text.status();
+  const absl::StatusOr<v1::IndexEntry> record = ParseRecord(*text);
   if (!record.ok()) return absl::OkStatus();  // the run requests it again
   // A changed leader comes first, because it may also change the labels that are drawn from it.
   const bool same_leader = record->leader() == item.leader->given;

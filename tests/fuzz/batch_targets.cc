@@ -80,7 +80,7 @@ Broken BatchJournal(absl::string_view input) {
   const absl::StatusOr<JournalReader> journal = JournalReader::Open(path);
   if (!journal.ok()) return CheckRefusal(journal.status(), {kDataLoss});
   int64_t visited = 0;
-  const absl::Status each = journal->ForEach([&visited](const client::batch::JournalEntry&) {
+  const absl::Status each = journal->ForEach([&visited](int64_t, const std::string&) {
     ++visited;
     return absl::OkStatus();
   });

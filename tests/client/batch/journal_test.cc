@@ -52,8 +52,8 @@ class JournalTest : public ::testing::Test {
     std::vector<std::string> records;
     const auto reader = JournalReader::Open(path_);
     EXPECT_THAT(reader, IsOk());
-    EXPECT_THAT(reader->ForEach([&records](const JournalEntry& entry) {
-      records.push_back(std::to_string(entry.item) + entry.record);
+    EXPECT_THAT(reader->ForEach([&records](int64_t item, const std::string& record) {
+      records.push_back(std::to_string(item) + record);
       return absl::OkStatus();
     }),
                 IsOk());
