@@ -51,18 +51,18 @@ void Job::StopWith(const absl::Status& status) {
 }
 
 Progress Job::progress() const {
-  return {planned_, resumed_, done_, rejected_, failed_, unfinished_, gate_.state()};
+  return {resumed_, done_, rejected_, failed_, unfinished_, gate_.state()};
 }
 
 absl::Status Job::Feed() {
-  while (planned_ < parts_.planned) {
+  for (int64_t planned = 0; planned < parts_.planned;) {
     absl::StatusOr<std::optional<Item>> item = plan_.Next();
     if (!item.ok()) return item.status();
     if (!item->has_value() || (*item)->number >= options_.limit) {
       return absl::AbortedError("the list of leaders was changed during the run");
     }
     if (!parts_.shard.Has((*item)->place)) continue;
-    ++planned_;
+    ++planned;
     if (parts_.survey->IsSettled((*item)->number)) {
       ++resumed_;
       continue;

@@ -34,8 +34,7 @@ struct JobOptions {
 
 // Progress of a run, in items.
 struct Progress {
-  int64_t planned = 0;  // that the run has reached so far
-  int64_t resumed = 0;  // of these, settled by earlier runs
+  int64_t resumed = 0;  // items of the run that earlier runs settled
   int64_t done = 0;     // by this run, like all counts below
   int64_t rejected = 0;
   int64_t failed = 0;      // permanently
@@ -125,7 +124,7 @@ class Job {
   const std::vector<int> skeleton_indices_;  // of dataset.json, by model
   LastLeaders leaders_;                      // used only by Feed
 
-  std::atomic<int64_t> planned_{0}, resumed_{0}, done_{0}, rejected_{0}, failed_{0};
+  std::atomic<int64_t> resumed_{0}, done_{0}, rejected_{0}, failed_{0};
   std::atomic<int64_t> unfinished_{0};
   std::mutex unfinished_mutex_;
   std::string first_unfinished_;

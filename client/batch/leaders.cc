@@ -289,21 +289,16 @@ absl::Status WithMendingField(const absl::Status& status) {
 
 absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const LeaderInput& input,
                       formats::ReadOptions options, LoadedLeader* loaded) {
-  const std::string& start = entry.follower_start;
-  if (start.empty() && !input.starts_as_other_person) return absl::OkStatus();
-  if (const std::optional<motion::Vec3> root = ParsePoint(start); root.has_value()) {
-    loaded->follower_start = *root;
+  if (entry.follower_start.empty() && !input.starts_as_other_person) return absl::OkStatus();
+  const std::string file =
+      entry.follower_start.empty() ? entry.file.string() : entry.follower_start;
+  absl::StatusOr<FollowerStart> start = ReadStart(file, entry.file, side, std::move(options));
+  if (!start.ok()) return WithMendingField(start.status());
+  loaded->follower_start = *std::move(start);
+  std::error_code error;
+  if (ParsePoint(file).has_value() || fs::equivalent(file, entry.file, error)) {
     return absl::OkStatus();
   }
-  const std::filesystem::path file = start.empty() ? entry.file : std::filesystem::path(start);
-  std::error_code error;
-  // In the leader's own file, the follower is the other person.
-  const bool own = start.empty() || std::filesystem::equivalent(file, entry.file, error);
-  options.side = own ? OtherSide(side) : formats::Side::kLeft;
-  absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(file, options);
-  if (!pose.ok()) return WithMendingField(pose.status());
-  loaded->follower_start = *std::move(pose);
-  if (own) return absl::OkStatus();
   absl::StatusOr<std::string> digest = base::Sha256HexOfFile(file);
   if (!digest.ok()) return digest.status();
   loaded->start_sha256 = *std::move(digest);
@@ -359,6 +354,17 @@ absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path&
                                                    "; choose another folder"));
   }
   return absl::OkStatus();
+}
+
+absl::StatusOr<FollowerStart> ReadStart(const std::string& start, const fs::path& leader,
+                                        formats::Side leader_side, formats::ReadOptions options) {
+  if (const std::optional<motion::Vec3> root = ParsePoint(start)) return FollowerStart(*root);
+  std::error_code error;
+  const bool own = fs::equivalent(start, leader, error);
+  options.side = own ? OtherSide(leader_side) : formats::Side::kLeft;
+  absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(start, options);
+  if (!pose.ok()) return pose.status();
+  return FollowerStart(*std::move(pose));
 }
 
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,

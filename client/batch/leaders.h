@@ -73,6 +73,12 @@ std::unique_ptr<LeaderSource> ReadManifest(std::unique_ptr<std::istream> in,
 // leaders.
 absl::Status CheckInputs(const std::vector<std::string>& inputs, const std::filesystem::path& out);
 
+// Reads the start of a follower: X,Y,Z, or a motion file. In the leader's own file, the follower is
+// the other person.
+absl::StatusOr<FollowerStart> ReadStart(const std::string& start,
+                                        const std::filesystem::path& leader,
+                                        formats::Side leader_side, formats::ReadOptions options);
+
 // A leader's motion in a model's joints, and the start of its follower.
 struct LoadedLeader {
   motion::Clip clip;

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -130,16 +129,6 @@ absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments,
   return batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
 }
 
-// Checks every line of the manifest.
-absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
-                                       const batch::SetSource& prepared,
-                                       const std::function<absl::Status(const batch::Item&)>& visit,
-                                       const std::function<bool()>& stopped) {
-  absl::StatusOr<batch::Plan> plan = MakePlan(arguments, prepared);
-  if (!plan.ok()) return plan.status();
-  return CheckPlan({arguments.shard, arguments.limit}, &*plan, visit, stopped);
-}
-
 absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                                 const ProgramEnvironment& environment, batch::SetSource prepared) {
   const batch::v1::Job begun =
@@ -162,8 +151,10 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
     }
     return absl::OkStatus();
   };
+  absl::StatusOr<batch::Plan> plan = MakePlan(arguments, prepared);
+  if (!plan.ok()) return plan.status();
   const absl::StatusOr<batch::PlanCheck> check =
-      Check(arguments, prepared, read, [] { return false; });
+      CheckPlan({arguments.shard, arguments.limit}, &*plan, read);
   if (!check.ok()) return check.status();
   *environment.out << base::Counted(check->items, "item") << " of "
                    << base::Counted(check->leaders, "leader") << ", "
@@ -179,12 +170,6 @@ int64_t ItemsOfRun(const batch::Progress& progress) {
   return progress.done + progress.rejected + progress.failed + progress.unfinished;
 }
 
-std::string Clock(double seconds) {
-  const auto whole = static_cast<int64_t>(seconds + 0.5);
-  if (whole < 3600) return absl::StrFormat("%d:%02d", whole / 60, whole % 60);
-  return absl::StrFormat("%d:%02d:%02d", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
 // One line about how far a run is: items, rate, time left, refusals and failures.
 std::string ProgressLine(const batch::Progress& progress, int64_t total, double seconds) {
   const int64_t made = ItemsOfRun(progress), left = total - progress.resumed - made;
@@ -192,8 +177,9 @@ std::string ProgressLine(const batch::Progress& progress, int64_t total, double 
   std::string line =
       absl::StrFormat("%d of %d items, %.1f a second", progress.resumed + made, total, rate);
   if (rate > 0) {
-    absl::StrAppend(&line, ", ", Clock(static_cast<double>(std::max<int64_t>(left, 0)) / rate),
-                    " left");
+    const auto seconds_left =
+        static_cast<int64_t>(static_cast<double>(std::max<int64_t>(left, 0)) / rate);
+    absl::StrAppend(&line, ", ", absl::FormatDuration(absl::Seconds(seconds_left)), " left");
   }
   absl::StrAppend(&line, ", ", progress.calls.in_flight, " of ", progress.calls.limit,
                   " calls at once");
@@ -333,14 +319,17 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   const absl::StatusOr<std::unique_ptr<batch::Survey>> survey =
       batch::Survey::Open(folder, arguments.repeats);
   if (!survey.ok()) return survey.status();
-  const absl::StatusOr<batch::PlanCheck> check = Check(
-      arguments, prepared, [&survey](const batch::Item& item) { return (*survey)->Add(item); },
+  absl::StatusOr<batch::Plan> plan = MakePlan(arguments, prepared);
+  if (!plan.ok()) return plan.status();
+  const absl::StatusOr<batch::PlanCheck> check = CheckPlan(
+      {arguments.shard, arguments.limit}, &*plan,
+      [&survey](const batch::Item& item) { return (*survey)->Add(item); },
       [&running] { return running.stopped(); });
   if (!check.ok()) return check.status();
   status = BadLinesError(*check);
   if (!status.ok()) return status;
   if (running.stopped()) return kExitRetry;
-  absl::StatusOr<batch::Plan> plan = MakePlan(arguments, prepared);
+  plan = MakePlan(arguments, prepared);  // from its first item
   if (!plan.ok()) return plan.status();
   absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();

@@ -1,7 +1,6 @@
 #include "client/cli/reaction.h"
 
 #include <algorithm>
-#include <system_error>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -9,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "client/batch/leaders.h"
 #include "client/cli/flags.h"
 #include "client/internal/proto_conversion.h"
 #include "client/model_skeleton.h"
@@ -28,26 +28,6 @@ absl::StatusOr<float> ParseVariety(absl::string_view text) {
   float variety = 0;
   if (absl::SimpleAtof(text, &variety) && variety >= 0 && variety <= 2) return variety;
   return Expected("a number from 0 to 2", text);
-}
-
-// In the leader's own file, the follower is the other person.
-formats::Side FollowerStartSide(const ReactionArguments& arguments) {
-  std::error_code error;
-  if (!std::filesystem::equivalent(arguments.follower_start, arguments.leader, error)) {
-    return kDefaultSide;
-  }
-  return batch::OtherSide(arguments.leader_side);
-}
-
-absl::StatusOr<FollowerStart> ReadStart(const ReactionArguments& arguments,
-                                        formats::ReadOptions options) {
-  if (const auto root = batch::ParsePoint(arguments.follower_start)) return FollowerStart(*root);
-  options.format = std::nullopt;  // describes the leader
-  options.side = FollowerStartSide(arguments);
-  absl::StatusOr<std::vector<motion::Vec3>> pose =
-      ReadFollowerStart(arguments.follower_start, options);
-  if (!pose.ok()) return pose.status();
-  return FollowerStart(*std::move(pose));
 }
 
 absl::Status ReadLeader(const ReactionArguments& arguments, formats::ReadOptions options,
@@ -286,7 +266,10 @@ absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skele
   const absl::StatusOr<formats::ReadOptions> options = ToReadOptions(arguments.input, skeleton);
   if (!options.ok()) return options.status();
   if (!arguments.follower_start.empty()) {
-    absl::StatusOr<FollowerStart> start = ReadStart(arguments, *options);
+    formats::ReadOptions reading = *options;
+    reading.format = std::nullopt;  // describes the leader
+    absl::StatusOr<FollowerStart> start = batch::ReadStart(
+        arguments.follower_start, arguments.leader, arguments.leader_side, std::move(reading));
     if (!start.ok()) return start.status();
     request->follower_start = *std::move(start);
   }
