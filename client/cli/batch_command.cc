@@ -25,6 +25,7 @@
 #include "client/batch/leaders.h"
 #include "client/batch/plan.h"
 #include "client/batch/survey.h"
+#include "client/batch/text_values.h"
 #include "client/cli/command.h"
 #include "client/cli/flags.h"
 #include "client/cli/server.h"
@@ -32,7 +33,6 @@
 #include "client/model_skeleton.h"
 #include "model/base/counted.h"
 #include "model/base/program_flags.h"
-#include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
@@ -40,34 +40,16 @@ namespace {
 // Maximum time to wait for a server before a run begins.
 constexpr double kFirstAnswerSeconds = 30;
 
-// How many leaders of a run may have items that fail permanently, without the run counting as
-// failed: a number, or a share of its leaders.
-struct AllowedFailures {
-  int64_t leaders = 0;
-  std::optional<double> share;  // 0 to 1, instead of the number
-
-  bool Allows(int64_t failed_leaders, int64_t all_leaders) const {
-    if (!share.has_value()) return failed_leaders <= leaders;
-    return static_cast<double>(failed_leaders) <= *share * static_cast<double>(all_leaders);
-  }
-};
-
-// "5" or "2%".
-absl::StatusOr<AllowedFailures> ParseAllowedFailures(absl::string_view text) {
-  AllowedFailures allowed;
+// The share of a run's leaders that may have items that fail permanently, without the run counting
+// as failed: "2%" is 0.02.
+absl::StatusOr<double> ParseAllowedFailures(absl::string_view text) {
+  double percent = 0;
   absl::string_view number = text;
-  if (absl::ConsumeSuffix(&number, "%")) {
-    double percent = 0;
-    if (absl::SimpleAtod(number, &percent) && percent >= 0 && percent <= 100) {
-      allowed.share = percent / 100;
-      return allowed;
-    }
-  } else if (absl::SimpleAtoi(number, &allowed.leaders) && allowed.leaders >= 0) {
-    return allowed;
+  if (absl::ConsumeSuffix(&number, "%") && absl::SimpleAtod(number, &percent) && percent >= 0 &&
+      percent <= 100) {
+    return percent / 100;
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("expected a number of leaders, or a share of them from 0% to 100%, got ",
-                   base::Quoted(text)));
+  return batch::Expected("a share of the leaders from 0% to 100%", text);
 }
 
 struct BatchArguments {
@@ -81,7 +63,11 @@ struct BatchArguments {
   double patience_seconds = 120;
   int64_t limit = std::numeric_limits<int64_t>::max();
   batch::Repeats repeats;
-  AllowedFailures allow_failed;
+  double allow_failed = 0;  // a share of the leaders
+
+  bool Allows(int64_t failed_leaders, int64_t all_leaders) const {
+    return static_cast<double>(failed_leaders) <= allow_failed * static_cast<double>(all_leaders);
+  }
   bool dry_run = false;
   bool quiet = false;
 };
@@ -161,8 +147,7 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                    << base::Counted(frames, "frame") << "\n";
   const absl::Status lines = BadLinesError(*check);
   if (!lines.ok()) return lines;
-  const bool allowed =
-      arguments.allow_failed.Allows(static_cast<int64_t>(bad.size()), check->files);
+  const bool allowed = arguments.Allows(static_cast<int64_t>(bad.size()), check->files);
   return allowed ? kExitDone : kExitBadInput;
 }
 
@@ -281,7 +266,7 @@ absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job
     report = job.Run();
   }
   if (!report.ok()) return report.status();
-  const bool allowed = arguments.allow_failed.Allows(report->set.failed_leaders, check.files);
+  const bool allowed = arguments.Allows(report->set.failed_leaders, check.files);
   Report(arguments, folder, *report, allowed, environment);
   if (!report->stopped.ok()) return report->stopped;
   if (running.stopped() || report->unfinished > 0 || !report->complete()) return kExitRetry;
@@ -407,10 +392,9 @@ void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
   app->add_flag("--verify", arguments->repeats.changed,
                 "Read every file of earlier runs, and make those that were changed again")
       ->group(kGroup);
-  AddParsed(app, kGroup, "--allow-failed", "COUNT|PERCENT%", ParseAllowedFailures,
+  AddParsed(app, kGroup, "--allow-failed", "PERCENT%", ParseAllowedFailures,
             &arguments->allow_failed,
-            "Exit with 0 although this many leaders, or this share of them, have items that failed "
-            "permanently");
+            "Exit with 0 although this share of the leaders have items that failed permanently");
   app->add_flag("--dry-run", arguments->dry_run,
                 "Check every line and every leader, and count items; writes nothing")
       ->group(kGroup);

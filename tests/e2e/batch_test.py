@@ -288,7 +288,7 @@ class BatchTest(tools.ServedTest):
         for name in ("kick", "hug", "push"):
             shutil.copy(tools.sample(name), leaders)
         (leaders / "broken.bvh").write_text("HIERARCHY", encoding="utf-8")
-        for allowed, code in (("0", 42), ("1", 0), ("24%", 42), ("25%", 0)):
+        for allowed, code in (("0%", 42), ("24%", 42), ("25%", 0)):
             for flags in (("--dry-run",), ()):
                 result = self.batch(self.out(1), recipe, "--allow-failed", allowed, *flags, code=code, leaders=leaders)
         self.assertIn("16 failed", result.stdout)
@@ -301,7 +301,7 @@ class BatchTest(tools.ServedTest):
         self.assertEqual(digests(self.out()), digests(self.out(1)))
         self.verified(self.out())
         wrong = self.batch(self.out("wrong"), recipe, "--allow-failed", "many", code=2)
-        self.assertIn("--allow-failed: expected a number of leaders, or a share", wrong.stderr)
+        self.assertIn("--allow-failed: expected a share of the leaders from 0% to 100%", wrong.stderr)
 
     def test_one_rate_for_all_items(self):
         leaders, out, mixed = self.out("leaders"), self.out(), self.out("mixed")
