@@ -290,7 +290,7 @@ Command AddAdminCommand(CLI::App* program) {
   const auto arguments = std::make_shared<AdminArguments>();
   CLI::App* app = program->add_subcommand("admin", "Change which models a running server serves");
   AddFlags(app, arguments.get());
-  return MakeServerCommand(app, arguments, RunAdmin);
+  return MakeCommand(app, arguments, RunAdmin);
 }
 
 }  // namespace duet::client::cli

@@ -437,7 +437,7 @@ Command AddBatchCommand(CLI::App* program) {
   AddFlowFlags(app, arguments.get());
   app->footer(kFooter);
   app->callback([arguments] { CheckTogether(*arguments); });
-  return MakeServerCommand(app, arguments, RunBatch);
+  return MakeCommand(app, arguments, RunBatch);
 }
 
 }  // namespace duet::client::cli

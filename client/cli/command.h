@@ -68,8 +68,6 @@ struct Command {
   CLI::App* app = nullptr;  // its name, help and flags
   // Runs after its flags were parsed. The program reports the error, if any.
   std::function<absl::StatusOr<ExitCode>(const ProgramEnvironment&)> run;
-  // The servers that it calls, for error messages.
-  std::function<std::string()> servers = [] { return std::string(); };
 };
 
 // The exit code of a command that either succeeds or fails with `status`.
@@ -84,21 +82,9 @@ inline absl::StatusOr<ExitCode> Done(absl::StatusOr<ExitCode> code) { return cod
 template <typename Arguments, typename Result>
 Command MakeCommand(CLI::App* app, std::shared_ptr<Arguments> arguments,
                     Result (*run)(const Arguments&, const ProgramEnvironment&)) {
-  Command command;
-  command.app = app;
-  command.run = [arguments = std::move(arguments), run](const ProgramEnvironment& environment) {
-    return Done(run(*arguments, environment));
-  };
-  return command;
-}
-
-// The same for a command that calls the server `arguments->server`.
-template <typename Arguments, typename Result>
-Command MakeServerCommand(CLI::App* app, const std::shared_ptr<Arguments>& arguments,
-                          Result (*run)(const Arguments&, const ProgramEnvironment&)) {
-  Command command = MakeCommand(app, arguments, run);
-  command.servers = [arguments] { return arguments->server.address; };
-  return command;
+  return {app, [arguments = std::move(arguments), run](const ProgramEnvironment& environment) {
+            return Done(run(*arguments, environment));
+          }};
 }
 
 // Each adds a command to the program; its file, such as view_command.cc, has all of it.

@@ -384,7 +384,7 @@ Command AddLiveCommand(CLI::App* program) {
   const auto arguments = std::make_shared<LiveArguments>();
   CLI::App* app = program->add_subcommand("live", "Answer a leader while it still moves");
   AddFlags(app, arguments.get());
-  return MakeServerCommand(app, arguments, RunLive);
+  return MakeCommand(app, arguments, RunLive);
 }
 
 }  // namespace duet::client::cli

@@ -89,7 +89,7 @@ Command AddModelsCommand(CLI::App* program) {
   CLI::App* app = program->add_subcommand("models", "List the models that the server serves");
   AddServerFlags(app, &arguments->server);
   app->add_flag("--json", arguments->json, "Print JSON");
-  return MakeServerCommand(app, arguments, RunModels);
+  return MakeCommand(app, arguments, RunModels);
 }
 
 }  // namespace duet::client::cli

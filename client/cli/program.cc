@@ -29,32 +29,30 @@ std::string FlagFor(motion::ReadingSetting setting) {
   return "";
 }
 
-std::string Advice(const absl::Status& status, const std::string& server_address) {
+std::string Advice(const absl::Status& status) {
   if (std::string advice = DescribeAdvice(status); !advice.empty()) return advice;
   if (ExitCodeFor(status) != kExitRetry) return "";
   // An error reason shows that a Duet server answered.
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
-    return absl::StrCat("Start a duet-server at ", server_address,
-                        ", or name another one with --server HOST:PORT (and --tls or --tls-ca FILE "
-                        "if it encrypts).\n");
+    return "Start a duet-server there, or name another one with --server HOST:PORT (and --tls or "
+           "--tls-ca FILE if it encrypts).\n";
   }
   return "Trying again later may help.\n";
 }
 
 // The error, with one line for every rejected field, and a hint.
-std::string DescribeFailure(const absl::Status& status, const std::string& server_address) {
+std::string DescribeFailure(const absl::Status& status) {
   const std::string code = absl::StatusCodeToString(status.code());
   const std::vector<FieldViolation> violations = FieldViolations(status);
   if (violations.empty()) {
-    return absl::StrCat("duet: ", status.message(), " (", code, ")\n",
-                        Advice(status, server_address));
+    return absl::StrCat("duet: ", status.message(), " (", code, ")\n", Advice(status));
   }
   std::string text = absl::StrCat("duet: the server rejects the request (", code, ")\n");
   for (const FieldViolation& violation : violations) {
     absl::StrAppend(&text, "  ", violation.field, violation.field.empty() ? "" : ": ",
                     violation.description, "\n");
   }
-  return text + Advice(status, server_address);
+  return text + Advice(status);
 }
 
 }  // namespace
@@ -98,7 +96,7 @@ int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironme
     if (!command.app->parsed()) continue;
     const absl::StatusOr<ExitCode> code = command.run(environment);
     if (code.ok()) return *code;
-    *environment.err << DescribeFailure(code.status(), command.servers());
+    *environment.err << DescribeFailure(code.status());
     return ExitCodeFor(code.status());
   }
   return kExitUsage;  // not reached: a command is required

@@ -34,8 +34,6 @@ class StopSignals {
   bool stopping_ = false;  // on_first was called; changed by the watcher only
   sigset_t stop_set_{};
   sigset_t before_{};
-  int signals_ = -1;
-  int end_ = -1;
   std::thread watcher_;
 };
 

@@ -316,7 +316,7 @@ Command AddSynthesizeCommand(CLI::App* program) {
   const auto arguments = std::make_shared<SynthesizeArguments>();
   CLI::App* app = program->add_subcommand("synthesize", "Synthesise the follower of a leader");
   AddFlags(app, arguments.get());
-  return MakeServerCommand(app, arguments, RunSynthesize);
+  return MakeCommand(app, arguments, RunSynthesize);
 }
 
 }  // namespace duet::client::cli

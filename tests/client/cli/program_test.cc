@@ -376,7 +376,7 @@ TEST_F(ProgramTest, MissingServerIsNamedAndExitsWithRetry) {
   EXPECT_CALL(*server_, GetModel).WillOnce(Return(absl::UnavailableError("refused")));
   EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
   EXPECT_EQ(err(),
-            "duet: refused (UNAVAILABLE)\nStart a duet-server at duet:1, or name another one with "
+            "duet: refused (UNAVAILABLE)\nStart a duet-server there, or name another one with "
             "--server HOST:PORT (and --tls or --tls-ca FILE if it encrypts).\n");
 }
 
