@@ -1,10 +1,11 @@
+#include <google/protobuf/util/json_util.h>
+
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <ostream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -21,31 +22,22 @@
 #include "client/internal/retry.h"
 #include "duet/admin/v1/admin.grpc.pb.h"
 #include "grpcpp/client_context.h"
-#include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
 namespace {
 
 namespace v1 = ::duet::admin::v1;
-using nlohmann::json;
 using Stub = v1::Admin::Stub;
 
 struct AdminArguments {
   enum class Action { kModels, kReload, kLoad, kUnload, kLabel };
   Action action = Action::kModels;
-  ServerArguments server = AdminServer();
+  ServerArguments server;
   std::string name;
   uint32_t version = 0;
   std::string label;
   bool delete_label = false;
   bool json = false;
-
- private:
-  static ServerArguments AdminServer() {
-    ServerArguments server;
-    server.address = "localhost:50052";
-    return server;
-  }
 };
 
 using Action = AdminArguments::Action;
@@ -54,11 +46,6 @@ using Action = AdminArguments::Action;
 std::string StateName(v1::ModelState state) {
   if (state == v1::MODEL_STATE_UNSPECIFIED) return "unknown";
   return absl::AsciiStrToLower(absl::StripPrefix(v1::ModelState_Name(state), "MODEL_STATE_"));
-}
-
-template <typename List>
-std::vector<std::string> Texts(const List& list) {
-  return {list.begin(), list.end()};
 }
 
 template <typename List>
@@ -86,25 +73,6 @@ std::string Describe(const v1::ListModelsResponse& models) {
   return text + Problems(models.problems());
 }
 
-json ToJson(const v1::ListModelsResponse& models) {
-  json list = json::array();
-  for (const v1::ModelVersion& model : models.models()) {
-    list.push_back({{"name", model.name()},
-                    {"version", model.version()},
-                    {"state", StateName(model.state())},
-                    {"error", model.error()},
-                    {"version_labels", Texts(model.version_labels())},
-                    {"is_default", model.is_default()},
-                    {"load_seconds", model.load_seconds()},
-                    {"outdated", model.outdated()}});
-  }
-  json skipped = json::array();
-  for (const v1::SkippedFolder& folder : models.skipped_folders()) {
-    skipped.push_back({{"folder", folder.folder()}, {"reason", folder.reason()}});
-  }
-  return {{"models", list}, {"skipped_folders", skipped}, {"problems", Texts(models.problems())}};
-}
-
 std::string Describe(const v1::ReloadResponse& result) {
   std::string text;
   const auto add = [&text](absl::string_view what, const auto& versions) {
@@ -117,17 +85,20 @@ std::string Describe(const v1::ReloadResponse& result) {
   return text + Problems(result.problems());
 }
 
-json ToJson(const v1::ReloadResponse& result) {
-  return {{"loaded", Texts(result.loaded())},
-          {"refused", Texts(result.refused())},
-          {"unloaded", Texts(result.unloaded())},
-          {"unchanged", result.unchanged_count()},
-          {"problems", Texts(result.problems())}};
+std::string ToJson(const google::protobuf::Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  options.always_print_primitive_fields = true;
+  options.preserve_proto_field_names = true;
+  std::string json;
+  // Cannot fail for a message without Any.
+  (void)google::protobuf::util::MessageToJsonString(message, &json, options);
+  return json;
 }
 
 template <typename Result>
 void PrintResult(const Result& result, bool as_json, const ProgramEnvironment& environment) {
-  *environment.out << (as_json ? Print(ToJson(result)) : Describe(result));
+  *environment.out << (as_json ? ToJson(result) : Describe(result));
 }
 
 // Calls the admin service, without retries.
@@ -145,14 +116,10 @@ class Caller {
   absl::StatusOr<Response> Call(grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
                                                              Response*),
                                 const Request& request) {
-    grpc::ClientContext context;
-    context.set_deadline(absl::ToChronoTime(absl::Now() + options_.deadline));
-    if (!options_.token.empty()) {
-      context.AddMetadata("authorization", absl::StrCat("Bearer ", options_.token));
-    }
+    const auto context = internal::NewContext(absl::Now() + options_.deadline, options_.token);
     Response response;
     const absl::Status status =
-        internal::FromGrpc(((*stub_).*method)(&context, request, &response));
+        internal::FromGrpc(((*stub_).*method)(context.get(), request, &response));
     if (!status.ok()) return internal::Explained(status, options_.server_address);
     return response;
   }
@@ -254,6 +221,7 @@ CLI::Option* AddVersion(CLI::App* command, AdminArguments* arguments) {
 void AddFlags(CLI::App* command, AdminArguments* arguments) {
   command->require_subcommand(1);
   command->footer(kFooter);
+  arguments->server.address = "localhost:50052";
   command->add_option("--admin-server", arguments->server.address, "Address of the admin service")
       ->capture_default_str()
       ->type_name("HOST:PORT")

@@ -64,7 +64,8 @@ class ModelRepositoryTest(unittest.TestCase):
         result = self.admin("models", "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
         models = json.loads(result.stdout)["models"]
-        return {f"{model['name']}/{model['version']} {model['state']}": model["error"]
+        return {f"{model['name']}/{model['version']} "
+                f"{model['state'].removeprefix('MODEL_STATE_').lower()}": model["error"]
                 for model in models}
 
     def synthesize(self, server, *flags):

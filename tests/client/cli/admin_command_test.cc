@@ -112,7 +112,9 @@ TEST_F(AdminCommandTest, ListsModelsAsTextAndJson) {
             "problem: access file: empty\n");
   EXPECT_EQ(Run({"models", "--json"}), kExitDone);
   const auto json = nlohmann::json::parse(out_.str());
-  EXPECT_EQ(json["models"][0]["state"], "served");
+  EXPECT_EQ(json["models"][0]["state"], "MODEL_STATE_SERVED");
+  EXPECT_EQ(json["models"][0]["version"], 3);
+  EXPECT_EQ(json["models"][1]["is_default"], false);
   EXPECT_EQ(json["models"][0]["outdated"], true);
   EXPECT_EQ(json["models"][1]["error"], "weights: expected 9 bytes, got 7");
   EXPECT_EQ(json["problems"][0], "access file: empty");
