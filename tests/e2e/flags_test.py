@@ -49,7 +49,7 @@ class FlagsTest(unittest.TestCase):
 
     def test_output_that_cannot_be_written_is_an_error(self):
         commands = [(program, "--help") for program in PROGRAMS + ("duet-server",)]
-        commands += [("duet", "--help-all"), ("duet", "inspect", tools.sample("kick"), "--json"),
+        commands += [("duet", "--help-all"), ("duet", "inspect", tools.sample("kick")),
                      ("duet-server", "--print-config")]
         for program, *arguments in commands:
             with self.subTest((program, *arguments)), open("/dev/full", "wb") as full:
