@@ -26,7 +26,6 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
-#include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
 namespace {
@@ -45,8 +44,6 @@ struct LiveArguments : ReactionArguments {
   std::vector<std::string> to;
   bool realtime = false;
   int delay_frames = 0;
-  int plan_frames = 0;
-  bool json = false;
   bool quiet = false;
 };
 
@@ -161,7 +158,6 @@ LiveRequest ToLiveRequest(const SynthesisRequest& request, const LiveArguments& 
   live.keyframes = request.keyframes;
   live.follower_start = request.follower_start;
   live.delay_frames = arguments.delay_frames;
-  live.plan_frames = arguments.plan_frames;
   return live;
 }
 
@@ -244,9 +240,6 @@ std::string DescribeLive(const live::LiveReport& report) {
   absl::StrAppendFormat(&text, "live      %.1f s, %d follower frames at %g Hz\n",
                         absl::ToDoubleSeconds(report.time), summary.follower_frames,
                         report.frame_rate_hz);
-  absl::StrAppendFormat(&text, "latency   p50 %.1f ms, p99 %.1f ms\n",
-                        absl::ToDoubleMilliseconds(report.latency.p50),
-                        absl::ToDoubleMilliseconds(report.latency.p99));
   const std::string losses = DescribeLosses(summary);
   if (!losses.empty()) absl::StrAppend(&text, "losses    ", losses, "\n");
   if (summary.resumed > 0) {
@@ -255,31 +248,6 @@ std::string DescribeLive(const live::LiveReport& report) {
   }
   for (const std::string& line : report.written) absl::StrAppend(&text, "wrote     ", line, "\n");
   return text;
-}
-
-std::string LiveJson(const live::LiveReport& report) {
-  const LiveSummary& summary = report.summary;
-  return Print({{"model", report.info.model_name},
-                {"model_version", report.info.model_version},
-                {"seed", report.info.seed},
-                {"variety", report.info.variety},
-                {"candidates", report.info.candidates},
-                {"cleaned_up", report.info.cleaned_up},
-                {"delay_frames", report.info.delay_frames},
-                {"request_id", report.info.request_id},
-                {"frame_rate_hz", report.frame_rate_hz},
-                {"seconds", absl::ToDoubleSeconds(report.time)},
-                {"leader_frames", summary.leader_frames},
-                {"follower_frames", summary.follower_frames},
-                {"gap_frames", summary.gap_frames},
-                {"late_frames", summary.late_frames},
-                {"skipped_frames", summary.skipped_frames},
-                {"resumed", summary.resumed},
-                {"latency_ms",
-                 {{"p50", absl::ToDoubleMilliseconds(report.latency.p50)},
-                  {"p99", absl::ToDoubleMilliseconds(report.latency.p99)}}},
-                {"notes", report.notes},
-                {"written", report.written}});
 }
 
 absl::Status RunLive(const LiveArguments& arguments, const ProgramEnvironment& environment) {
@@ -294,8 +262,7 @@ absl::Status RunLive(const LiveArguments& arguments, const ProgramEnvironment& e
   if (arguments.quiet) return absl::OkStatus();
   // With frames on standard output, the summary goes to standard error.
   const bool out_has_frames = CountOf(kStandardStream, arguments.to) > 0;
-  (out_has_frames ? *environment.err : *environment.out)
-      << (arguments.json ? LiveJson(*report) : DescribeLive(*report));
+  (out_has_frames ? *environment.err : *environment.out) << DescribeLive(*report);
   return absl::OkStatus();
 }
 
@@ -314,10 +281,8 @@ void CheckTogether(const LiveArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty() && arguments.request.empty()) {
     RejectMissing("--label, --keyframe or --request");
   }
-  const auto outs = CountOf(kStandardStream, arguments.to);
-  if (outs > 1) RejectFlag("--to", "expected - once, got it twice");
-  if (outs > 0 && arguments.json) {
-    RejectFlag("--json", "cannot be used with --to -: both print to standard output");
+  if (CountOf(kStandardStream, arguments.to) > 1) {
+    RejectFlag("--to", "expected - once, got it twice");
   }
   for (const std::string& to : arguments.to) {
     const absl::Status status = CheckSink(to, arguments);
@@ -358,18 +323,13 @@ void AddFlags(CLI::App* app, LiveArguments* arguments) {
            "10; a few give a better reaction")
       ->check(base::InRange(0, 10))
       ->capture_default_str();
-  AddValue(app, kReactionGroup, "--plan", "FRAMES", &arguments->plan_frames,
-           "Provisional frames, from 0 to 30, beyond each final one, for outputs that can "
-           "show them")
-      ->check(base::InRange(0, 30))
-      ->capture_default_str();
   AddValue(app, kOutputGroup, "--to", "FILE|-", &arguments->to,
            "Where the follower goes: a motion file with the follower as its only person, a "
            "page with both people (.html), or - for lines of JSON on standard output; "
            "repeatable")
       ->required()
       ->allow_extra_args(false);
-  AddSummaryFlags(app, kOutputGroup, &arguments->json, &arguments->quiet);
+  app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
   AddServerFlags(app, &arguments->server);
   app->footer(kFooter);
   app->callback([arguments] {

@@ -13,7 +13,6 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/time/clock.h"
 #include "model/base/counted.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
@@ -224,8 +223,7 @@ absl::StatusOr<LeaderEvent> JsonLinesSource::ReadFrame(const nlohmann::json& obj
   }
   if (!status.ok()) return status;
   next_index_ = static_cast<int>(index) + 1;
-  return LeaderFrame{static_cast<int>(index), retargeting::ApplyJointMap(*map_, *pose),
-                     absl::Now()};
+  return LeaderFrame{static_cast<int>(index), retargeting::ApplyJointMap(*map_, *pose)};
 }
 
 absl::StatusOr<std::vector<motion::Vec3>> JsonLinesSource::ReadPositions(

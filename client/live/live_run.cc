@@ -9,19 +9,6 @@
 #include "absl/time/clock.h"
 
 namespace duet::client::live {
-namespace {
-
-double SecondsOf(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
-
-// The nearest-rank percentile. Reorders `values`, which are not empty.
-absl::Duration Percentile(std::vector<absl::Duration>* values, std::size_t percent) {
-  const std::size_t rank = (values->size() * percent + 99) / 100;
-  const auto nth = values->begin() + static_cast<std::ptrdiff_t>(rank - 1);
-  std::nth_element(values->begin(), nth, values->end());
-  return *nth;
-}
-
-}  // namespace
 
 absl::StatusOr<LeaderFormat> ClipSource::Open() {
   return LeaderFormat{clip_.joint_names, clip_.frame_rate_hz};
@@ -41,28 +28,13 @@ bool ClipSource::WaitForFrame() {
 absl::StatusOr<std::optional<LeaderEvent>> ClipSource::Next() {
   if (next_ >= clip_.frame_count() || !WaitForFrame()) return std::nullopt;
   const auto pose = clip_.poses[next_];
-  return LeaderFrame{next_++, {pose.begin(), pose.end()}, absl::Now()};
+  return LeaderFrame{next_++, {pose.begin(), pose.end()}};
 }
 
 void ClipSource::Stop() {
   const std::lock_guard<std::mutex> lock(mutex_);
   stopped_ = true;
   stopping_.notify_all();
-}
-
-void LatencyLog::Add(absl::Duration latency) {
-  if (kept_.size() < kKept) {
-    kept_.push_back(latency);
-    return;
-  }
-  kept_[next_] = latency;
-  next_ = (next_ + 1) % kKept;
-}
-
-Latencies LatencyLog::Percentiles() const {
-  std::vector<absl::Duration> values = kept_;
-  if (values.empty()) return {};
-  return {Percentile(&values, 50), Percentile(&values, 99)};
 }
 
 absl::StatusOr<LiveReport> LiveRun::Run(const Client& client, LiveRequest request) {
@@ -102,7 +74,6 @@ absl::Status LiveRun::RunSession(const Client& client, const LiveRequest& reques
   const std::lock_guard<std::mutex> lock(mutex_);
   report_.summary = *summary;
   report_.time = absl::Now() - begin_;
-  report_.latency = latencies_.Percentiles();
   return followed;
 }
 
@@ -126,14 +97,10 @@ absl::Status LiveRun::Follow(LiveSession* session) {
 absl::Status LiveRun::Send(LiveSession* session, const LeaderFrame& frame) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    // Frames of a gap count from the capture of the frame that ends it.
-    while (sent_end_ <= frame.index) {
-      captured_.push_back(frame.captured);
-      ++sent_end_;
-    }
+    sent_end_ = std::max(sent_end_, frame.index + 1);
     for (FollowerSink* sink : sinks_) sink->AcceptLeader(frame);
   }
-  return session->Send(frame.index, frame.positions, SecondsOf(frame.captured));
+  return session->Send(frame.index, frame.positions, /*capture_seconds=*/0);
 }
 
 void LiveRun::WaitForAnswers() {
@@ -150,17 +117,7 @@ void LiveRun::End() {
 }
 
 absl::Status LiveRun::Accept(const LiveFrames& frames) {
-  const absl::Time now = absl::Now();
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (int i = 0; i < frames.poses.frame_count(); ++i) {
-    // The last frames of a motion do not wait for later ones.
-    const int waited_for = std::min(frames.first_frame + i + delay_frames_, sent_end_ - 1);
-    while (first_captured_ < waited_for && captured_.size() > 1) {
-      captured_.pop_front();
-      ++first_captured_;
-    }
-    if (!captured_.empty()) latencies_.Add(now - captured_.front());
-  }
   answered_end_ = frames.first_frame + frames.poses.frame_count();
   absl::Status status;
   for (FollowerSink* sink : sinks_) status.Update(sink->Accept(frames));

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -35,8 +34,6 @@ struct LeaderFrame {
   // frames. Skipped indices mean lost frames. A repeated index is a frame that is too late.
   int index = 0;
   std::vector<motion::Vec3> positions;  // [joint_names]; metres, y up
-  // When it was captured, by this machine's clock. Latency is measured from this time.
-  absl::Time captured;
 };
 
 // New labels, from the next frame on.
@@ -111,7 +108,7 @@ class FollowerSink {
   // Called once, before Accept. The follower has the leader's joints and frame rate.
   virtual absl::Status Start(const LeaderFormat& format) = 0;
 
-  // The next final frames, without gaps from frame 0 on, and the plan of the frames after them.
+  // The next final frames, without gaps from frame 0 on.
   // Must return quickly: the session waits. An error ends the session.
   virtual absl::Status Accept(const LiveFrames& frames) = 0;
 
@@ -124,33 +121,11 @@ class FollowerSink {
   virtual absl::StatusOr<std::vector<std::string>> Finish(const LiveInfo& info) = 0;
 };
 
-// Two percentiles of latencies.
-struct Latencies {
-  absl::Duration p50, p99;
-};
-
-// The latencies of the last frames, at most kKept of them.
-class LatencyLog {
- public:
-  static constexpr std::size_t kKept = std::size_t{1} << 18;
-
-  void Add(absl::Duration latency);
-  // Zero without frames.
-  Latencies Percentiles() const;
-
- private:
-  std::vector<absl::Duration> kept_;  // a ring, once it is full
-  std::size_t next_ = 0;
-};
-
 // A finished run.
 struct LiveReport {
   LiveInfo info;
   LiveSummary summary;
   absl::Duration time;  // since the session began
-  // From the capture of the last leader frame that a follower frame waits for to its arrival:
-  // without the delay, which the caller chose.
-  Latencies latency;
   double frame_rate_hz = 0;
   std::vector<std::string> written;  // by the sinks
   std::vector<std::string> notes;    // of the source
@@ -190,9 +165,6 @@ class LiveRun {
   std::mutex mutex_;  // of everything below, and of the sinks
   std::condition_variable answered_;
   absl::Time begin_;
-  LatencyLog latencies_;
-  std::deque<absl::Time> captured_;  // of the leader frames from first_captured_ on
-  int first_captured_ = 0;
   int sent_end_ = 0, answered_end_ = 0;
   bool ended_ = false;  // the session has ended
 };

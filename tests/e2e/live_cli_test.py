@@ -57,14 +57,13 @@ class LiveCliTest(tools.ServedTest):
         page = follower.with_name("pair.html")
         begin = time.monotonic()
         result = self.run_live("--from", tools.sample("hug"), "--realtime", "--to", follower,
-                               "--to", page, "--json")
+                               "--to", page)
         self.assertGreater(time.monotonic() - begin, (FRAMES - 1) / 30)
         self.assertIn(f"Frames: {FRAMES}\n", follower.read_text(encoding="utf-8"))
         self.assertIn("<html", page.read_text(encoding="utf-8"))
-        summary = json.loads(result.stdout)
-        self.assertEqual((summary["leader_frames"], summary["follower_frames"]), (FRAMES, FRAMES))
-        self.assertEqual(summary["gap_frames"] + summary["resumed"], 0)
-        self.assertGreater(summary["latency_ms"]["p50"], 0)
+        self.assertIn(f"{FRAMES} follower frames", result.stdout)
+        self.assertNotIn("losses", result.stdout)
+        self.assertNotIn("resumed", result.stdout)
         self.assertEqual(result.stderr, "")
 
     def test_lines_of_json_are_answered_as_the_file_is(self):

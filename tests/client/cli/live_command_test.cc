@@ -136,11 +136,10 @@ TEST_F(LiveCommandTest, AFileIsAnsweredIntoFiles) {
   EXPECT_NEAR(follower.at(19, 3).x, leader_.at(19, 3).x + 1, 1e-4);
   EXPECT_EQ(ReadFollower("f.bvh").frame_count(), kFrames);
   EXPECT_THAT(ReadTestFile(folder_ / "pair.html"), HasSubstr("leader"));
-  EXPECT_THAT(out_.str(),
-              AllOf(HasSubstr("model     dancer@3, seed 7, delay 2 frames\n"),
-                    HasSubstr("20 follower frames at 15 Hz\n"), HasSubstr("latency   p50 "),
-                    HasSubstr(absl::StrCat("wrote     ", Path("follower.csv"), "\n")),
-                    Not(HasSubstr("losses")), Not(HasSubstr("resumed"))));
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("model     dancer@3, seed 7, delay 2 frames\n"),
+                                HasSubstr("20 follower frames at 15 Hz\n"),
+                                HasSubstr(absl::StrCat("wrote     ", Path("follower.csv"), "\n")),
+                                Not(HasSubstr("losses")), Not(HasSubstr("resumed"))));
   EXPECT_EQ(err_.str(), "");
   const v1::LiveStart start = mirror_.starts().at(0);
   EXPECT_EQ(start.seed(), 7u);
@@ -155,14 +154,13 @@ TEST_F(LiveCommandTest, FlagsAndTheRequestReachTheServer) {
                 "clean_up: CLEAN_UP_OFF partner_direction { z: 1 } seed: 9 "
                 "model { name: 'dancer' version: 3 }");
   ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.json"), "--request", Path("request"),
-                 "--keyframe", "0:hug=1", "--keyframe", "10:hug=0,kick=1", "--plan", "5",
-                 "--variety", "0.5", "--candidates", "3", "--follower-start", "0,1,2", "--json"}),
+                 "--keyframe", "0:hug=1", "--keyframe", "10:hug=0,kick=1", "--variety", "0.5",
+                 "--candidates", "3", "--follower-start", "0,1,2"}),
             0)
       << err_.str();
   const v1::LiveStart start = mirror_.starts().at(0);
   ASSERT_EQ(start.label_keyframes_size(), 2);
   EXPECT_EQ(start.label_keyframes(1).frame(), 10u);
-  EXPECT_EQ(start.plan_frames(), 5u);
   EXPECT_EQ(start.seed(), 9u);
   EXPECT_EQ(start.variety(), 0.5);
   EXPECT_EQ(start.candidates(), 3u);
@@ -170,10 +168,7 @@ TEST_F(LiveCommandTest, FlagsAndTheRequestReachTheServer) {
   EXPECT_EQ(start.follower_start().root_position().z(), 2);
   EXPECT_EQ(start.partner_direction().z(), 1);
   EXPECT_EQ(start.model().version(), 3u);
-  const json report = json::parse(out_.str());
-  EXPECT_EQ(report["follower_frames"], kFrames);
-  EXPECT_EQ(report["skipped_frames"], 0);
-  EXPECT_EQ(report["written"][0], Path("follower.json"));
+  EXPECT_THAT(out_.str(), HasSubstr(absl::StrCat("wrote     ", Path("follower.json"), "\n")));
 }
 
 TEST_F(LiveCommandTest, FieldsOfWholeClipsAreRejected) {
@@ -256,7 +251,6 @@ TEST_F(LiveCommandTest, UsageErrorsAreFoundBeforeTheServerIsCalled) {
   refuses({"--to", "-"}, "--from is required");
   refuses({"--from", "-"}, "--to is required");
   refuses({"--from", "-", "--to", "-", "--to", "-"}, "--to: expected - once, got it twice");
-  refuses({"--from", "-", "--to", "-", "--json"}, "--json: cannot be used with --to -");
   refuses({"--from", "-", "--to", Path("a.mov")}, "extension");
   refuses({"--from", "-", "--to", Path("a.txt")}, "expected a format that can hold one person");
   refuses({"--from", Leader(), "--to", Leader()}, "would replace the file that is read");
@@ -264,7 +258,6 @@ TEST_F(LiveCommandTest, UsageErrorsAreFoundBeforeTheServerIsCalled) {
   std::filesystem::create_directory(Path("folder.csv"));
   refuses({"--from", "-", "--to", Path("folder.csv")}, "expected a file, got a folder");
   refuses({"--from", "-", "--to", "-", "--delay", "11"}, "--delay");
-  refuses({"--from", "-", "--to", "-", "--plan", "31"}, "--plan");
   labelled_ = true;
   refuses({"--from", "-", "--to", "-"}, "--label, --keyframe or --request is required");
   EXPECT_THAT(mirror_.starts(), IsEmpty());
