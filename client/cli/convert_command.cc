@@ -224,7 +224,7 @@ void CheckRig(const ConvertArguments& arguments) {
 void CheckTogether(const ConvertArguments& arguments) {
   for (const std::filesystem::path& output : arguments.outputs) {
     const absl::Status status =
-        CheckOutput(output, {arguments.file, arguments.rig.file}, PageAllowed::kNo);
+        CheckOutput(output, {arguments.file, arguments.rig.file}, OutputKind::kMotion);
     if (!status.ok()) RejectFlag("--out", std::string(status.message()));
   }
   CheckRig(arguments);

@@ -105,11 +105,14 @@ absl::Status CheckReplacesNone(const std::filesystem::path& written,
 }
 
 absl::Status CheckOutput(const std::filesystem::path& output,
-                         const std::vector<std::filesystem::path>& inputs, PageAllowed page) {
-  const bool page_allowed = page == PageAllowed::kYes;
-  if (!formats::FormatOf(output) && !(page_allowed && IsPage(output))) {
-    return formats::UnknownExtension(
-        output, absl::StrCat(page_allowed ? ".html, " : "", formats::kWritableExtensions));
+                         const std::vector<std::filesystem::path>& inputs, OutputKind kind) {
+  const bool is_page = kind != OutputKind::kMotion && IsPage(output);
+  const bool is_motion = kind != OutputKind::kPage && formats::FormatOf(output).has_value();
+  if (!is_page && !is_motion) {
+    std::string known = kind == OutputKind::kMotion ? "" : ".html";
+    if (kind == OutputKind::kEither) known += ", ";
+    if (kind != OutputKind::kPage) known += formats::kWritableExtensions;
+    return formats::UnknownExtension(output, known);
   }
   if (absl::Status status = formats::CheckFolderOf(output); !status.ok()) return status;
   std::error_code error;

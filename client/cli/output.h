@@ -23,13 +23,13 @@ struct Synthesis {
   bool sampled = false;  // the model samples: the follower is one of several
 };
 
-enum class PageAllowed { kNo, kYes };
-// Checks that an output can be written, before any work is done for it: a known extension, a folder
-// that exists, and neither a folder nor one of the files that are read.
+enum class OutputKind { kMotion, kPage, kEither };
+// Checks that an output can be written, before any work is done for it: an extension of its kind, a
+// folder that exists, and neither a folder nor one of the files that are read.
 // Errors: INVALID_ARGUMENT.
 absl::Status CheckOutput(const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs,
-                         PageAllowed page = PageAllowed::kYes);
+                         OutputKind kind = OutputKind::kEither);
 // INVALID_ARGUMENT if `written` is one of `inputs`, also by another path. Inputs that are empty or
 // no files are ignored.
 absl::Status CheckReplacesNone(const std::filesystem::path& written,

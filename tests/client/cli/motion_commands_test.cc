@@ -312,30 +312,17 @@ TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {
   EXPECT_THAT(ReadTestFile(folder_ / "view.html"),
               AllOf(StartsWith("<!doctype html>"), HasSubstr("<title>Tuesday<")));
   EXPECT_EQ(Run({"view", Path("one.bvh"), "--out", Path("view.csv")}), 2);
+  EXPECT_THAT(err(), HasSubstr("expected .html, got \".csv\""));
 }
 
-TEST_F(MotionCommandsTest, ViewFindsTheFollowerBesideALeader) {
-  Write("walk.bvh", Format::kBvh, {leader_, follower_});
-  const std::string first = Path("walk.leader.bvh"), second = Path("walk.follower.bvh");
-  ASSERT_EQ(Run({"view", first, second, "--out", Path("v.html")}), 0) << err();
-  EXPECT_THAT(out(), AllOf(StartsWith("shown     walk: " + first + " and " + second + "\n"),
-                           Not(HasSubstr("shown     walk.follower"))));
-  ASSERT_EQ(Run({"view", "best=" + second, "--out", Path("v.html")}), 0) << err();
-  EXPECT_THAT(out(), HasSubstr("shown     best: " + second + " (one person)\n"));
+TEST_F(MotionCommandsTest, ViewNamesMotionsByTheirFilesOrTheFlag) {
+  ASSERT_EQ(Run({"view", "best=" + Path("one.bvh"), "--out", Path("v.html")}), 0) << err();
+  EXPECT_THAT(out(), HasSubstr("shown     best: " + Path("one.bvh") + " (one person)\n"));
   WriteTestFile(folder_ / "a=b.csv", ReadTestFile(folder_ / "one.csv"));
   ASSERT_EQ(Run({"view", Path("a=b.csv"), "--out", Path("v.html")}), 0) << err();
   EXPECT_THAT(out(), HasSubstr("shown     a=b: "));
   EXPECT_EQ(Run({"view", Path("no.csv"), "--out", Path("v.html")}), 42);
   EXPECT_THAT(err(), HasSubstr("no.csv: no such file"));
-}
-
-TEST_F(MotionCommandsTest, ViewRejectsAFollowerOfAnotherLength) {
-  Write("walk.bvh", Format::kBvh, {leader_, follower_});
-  test::PersonOptions shorter;
-  shorter.frames = 20;
-  Write("walk.follower.bvh", Format::kBvh, {MakePerson(shorter)});
-  EXPECT_EQ(Run({"view", Path("walk.leader.bvh"), "--out", Path("v.html")}), 42);
-  EXPECT_THAT(err(), HasSubstr("walk.follower.bvh: expected the leader's 60 frames, got 20"));
 }
 
 }  // namespace
