@@ -27,9 +27,7 @@ using formats::Format;
 struct RigArguments {
   std::filesystem::path file;  // empty: Duet's own rig
   formats::Side side = kDefaultSide;
-  std::optional<motion::UpAxis> up_axis;
-  std::optional<double> metres_per_unit;
-  std::vector<std::string> joint_map;  // as InputArguments::joint_map
+  InputArguments reading;
 };
 
 struct ConvertArguments {
@@ -78,18 +76,10 @@ void ChoosePerson(formats::Side side, Clips* people) {
 
 absl::StatusOr<formats::FollowerRig> ReadRig(const RigArguments& arguments,
                                              const motion::Skeleton& skeleton) {
-  formats::FollowerRig rig;
-  rig.file = arguments.file;
-  rig.reading.skeleton = skeleton;
-  rig.reading.side = arguments.side;
-  rig.reading.metres_per_unit = arguments.metres_per_unit;
-  if (arguments.up_axis) {
-    rig.reading.coordinates = motion::Coordinates{motion::LengthUnit::kMetres, *arguments.up_axis};
-  }
-  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(arguments.joint_map);
-  if (!joints.ok()) return joints.status();
-  rig.reading.joint_overrides = *std::move(joints);
-  return rig;
+  absl::StatusOr<formats::ReadOptions> reading = ToReadOptions(arguments.reading, skeleton);
+  if (!reading.ok()) return reading.status();
+  reading->side = arguments.side;
+  return formats::FollowerRig{arguments.file, *std::move(reading)};
 }
 
 absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments) {
@@ -239,14 +229,15 @@ void AddRigFlags(CLI::App* app, RigArguments* rig) {
             "The person in a --rig file with two people")
       ->default_str("left")
       ->needs(file);
-  AddParsed(app, kOutputGroup, "--rig-up-axis", "y-up|z-up|y-down", ParseAxis, &rig->up_axis,
-            "Up axis of the rig; overrides the file")
+  AddParsed(app, kOutputGroup, "--rig-up-axis", "y-up|z-up|y-down", ParseAxis,
+            &rig->reading.up_axis, "Up axis of the rig; overrides the file")
       ->needs(file);
-  AddValue(app, kOutputGroup, "--rig-metres-per-unit", "METRES", &rig->metres_per_unit,
+  AddValue(app, kOutputGroup, "--rig-metres-per-unit", "METRES", &rig->reading.metres_per_unit,
            "Metres in one unit of the rig (0.01 for centimetres)")
       ->check(AboveZero())
       ->needs(file);
-  AddValue(app, kOutputGroup, "--rig-joint-map", "MODEL_JOINT=RIG_JOINT|FILE", &rig->joint_map,
+  AddValue(app, kOutputGroup, "--rig-joint-map", "MODEL_JOINT=RIG_JOINT|FILE",
+           &rig->reading.joint_map,
            "Joint of the rig for a joint of the model, if its name is not recognised, or a file "
            "with one such pair on each line; repeatable")
       ->allow_extra_args(false)

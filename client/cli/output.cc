@@ -84,26 +84,6 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
 
 }  // namespace
 
-std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output) {
-  std::vector<std::filesystem::path> files = {output};
-  if (formats::FormatOf(output) == formats::Format::kBvh) {
-    files.push_back(std::filesystem::path(output).replace_extension(".leader.bvh"));
-    files.push_back(std::filesystem::path(output).replace_extension(".follower.bvh"));
-  }
-  return files;
-}
-
-absl::Status CheckReplacesNone(const std::filesystem::path& written,
-                               const std::vector<std::filesystem::path>& inputs) {
-  for (const std::filesystem::path& input : inputs) {
-    std::error_code error;
-    if (!std::filesystem::equivalent(written, input, error)) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(written.string(), ": would replace the file that is read, ", input.string()));
-  }
-  return absl::OkStatus();
-}
-
 absl::Status CheckOutput(const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs, OutputKind kind) {
   const bool is_page = kind != OutputKind::kMotion && IsPage(output);
@@ -120,7 +100,12 @@ absl::Status CheckOutput(const std::filesystem::path& output,
     return absl::InvalidArgumentError(
         absl::StrCat(output.string(), ": expected a file, got a folder"));
   }
-  return CheckReplacesNone(output, inputs);
+  for (const std::filesystem::path& input : inputs) {
+    if (!std::filesystem::equivalent(output, input, error)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(output.string(), ": would replace the file that is read, ", input.string()));
+  }
+  return absl::OkStatus();
 }
 
 absl::Status CheckCanCreate(const std::filesystem::path& output) {

@@ -25,20 +25,14 @@ struct Synthesis {
 
 enum class OutputKind { kMotion, kPage, kEither };
 // Checks that an output can be written, before any work is done for it: an extension of its kind, a
-// folder that exists, and neither a folder nor one of the files that are read.
+// folder that exists, and neither a folder nor one of the files that are read, which may be empty.
 // Errors: INVALID_ARGUMENT.
 absl::Status CheckOutput(const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs,
                          OutputKind kind = OutputKind::kEither);
-// INVALID_ARGUMENT if `written` is one of `inputs`, also by another path. Inputs that are empty or
-// no files are ignored.
-absl::Status CheckReplacesNone(const std::filesystem::path& written,
-                               const std::vector<std::filesystem::path>& inputs);
 // ABORTED if the file cannot be created now, as on a read-only disk. For outputs that are written
 // long after the work began: creates a file beside it, and removes it.
 absl::Status CheckCanCreate(const std::filesystem::path& output);
-// The output, and the files that WriteOutput may write in place of it.
-std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output);
 
 // Writes the pair as the extension says, whole files or none, and returns them (.bvh makes two).
 absl::StatusOr<std::vector<std::filesystem::path>> WriteOutput(const std::filesystem::path& output,
