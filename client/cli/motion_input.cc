@@ -41,6 +41,10 @@ absl::StatusOr<formats::Format> ParseInputFormat(absl::string_view text) {
   return Known(formats::ParseFormat(text), formats::kReadableFormatNames, text);
 }
 
+absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text) {
+  return Known(motion::ParseLengthUnit(text), motion::kLengthUnitNames, text);
+}
+
 // A stated unit may be wrong. An inferred one always gives the legs of a person.
 void WarnOfSize(const motion::Clip& clip, const formats::ReadOptions& options) {
   if (!options.skeleton.feet || options.report == nullptr) return;
@@ -103,10 +107,6 @@ absl::StatusOr<motion::Skeleton> ParseSkeleton(absl::string_view text) {
 }
 
 }  // namespace
-
-absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text) {
-  return Known(motion::ParseLengthUnit(text), motion::kLengthUnitNames, text);
-}
 
 absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text) {
   return Known(motion::ParseUpAxis(text), motion::kUpAxisNames, text);

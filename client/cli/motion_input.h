@@ -41,8 +41,7 @@ void AddReadingFlags(CLI::App* app, InputArguments* input);
 // The same with --unit, --up-axis and --animation, for commands that only read and write files.
 void AddInputFlags(CLI::App* app, InputArguments* input);
 
-// The syntax of units and axes. Errors: INVALID_ARGUMENT "expected ..., got ...".
-absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text);
+// The syntax of axes. Errors: INVALID_ARGUMENT "expected ..., got ...".
 absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text);
 
 // Like formats::ReadLeader. Warns in the report of a person of no likely size.

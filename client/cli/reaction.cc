@@ -1,12 +1,10 @@
 #include "client/cli/reaction.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "client/batch/leaders.h"
 #include "client/cli/flags.h"
@@ -131,21 +129,20 @@ absl::Status CheckInputs(const ReactionArguments& arguments) {
       absl::StrCat("--follower-start: ", status.message(), "; expected a motion file or X,Y,Z"));
 }
 
-// Rejects a class that the model does not know.
-absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model) {
-  std::vector<ClassWeight> weights = request.weights;
-  for (const WeightKeyframe& keyframe : request.keyframes) {
-    weights.insert(weights.end(), keyframe.weights.begin(), keyframe.weights.end());
+// The request of the file with the fields of the flags.
+absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments) {
+  absl::StatusOr<SynthesisRequest> request = SynthesisRequest();
+  if (!arguments.request.empty()) request = ReadRequestFile(arguments.request);
+  if (!request.ok()) return request;
+  if (arguments.model) request->model = *arguments.model;
+  if (!arguments.weights.empty() || !arguments.keyframes.empty()) {
+    request->weights = arguments.weights;
+    request->keyframes = arguments.keyframes;
   }
-  const std::vector<std::string>& known = model.interaction_classes;
-  for (const ClassWeight& weight : weights) {
-    const std::string& name = weight.interaction_class;
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(request.keyframes.empty() ? "label" : "keyframe", ": class: expected one of ",
-                     model.name, " (", absl::StrJoin(known, ", "), "), got ", base::Quoted(name)));
-  }
-  return absl::OkStatus();
+  if (arguments.seed) request->seed = *arguments.seed;
+  if (arguments.variety) request->variety = *arguments.variety;
+  if (arguments.candidates) request->candidates = *arguments.candidates;
+  return request;
 }
 
 }  // namespace
@@ -224,21 +221,6 @@ absl::StatusOr<SynthesisRequest> ReadRequestFile(const std::filesystem::path& fi
   return request;
 }
 
-absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments) {
-  absl::StatusOr<SynthesisRequest> request = SynthesisRequest();
-  if (!arguments.request.empty()) request = ReadRequestFile(arguments.request);
-  if (!request.ok()) return request;
-  if (arguments.model) request->model = *arguments.model;
-  if (!arguments.weights.empty() || !arguments.keyframes.empty()) {
-    request->weights = arguments.weights;
-    request->keyframes = arguments.keyframes;
-  }
-  if (arguments.seed) request->seed = *arguments.seed;
-  if (arguments.variety) request->variety = *arguments.variety;
-  if (arguments.candidates) request->candidates = *arguments.candidates;
-  return request;
-}
-
 absl::StatusOr<PreparedCall> PrepareCall(
     const ReactionArguments& arguments, const ServerArguments& server,
     const std::function<absl::Status(const SynthesisRequest&)>& check,
@@ -253,8 +235,6 @@ absl::StatusOr<PreparedCall> PrepareCall(
   if (!client.ok()) return client.status();
   absl::StatusOr<ModelDetails> details = client->GetModel(request->model);
   if (!details.ok()) return details.status();
-  status = CheckLabels(*request, details->model);
-  if (!status.ok()) return status;
   absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
   if (!skeleton.ok()) return skeleton.status();
   return PreparedCall{*std::move(request), *std::move(client), details->model.samples,

@@ -61,20 +61,18 @@ absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text);
 // model.
 absl::StatusOr<SynthesisRequest> ReadRequestFile(const std::filesystem::path& file);
 
-// The request of the file with the fields of the flags, except those that are read in a model's
-// joints: the leader and the follower's start.
-absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments);
-
 // What a command has before it reads motions.
 struct PreparedCall {
-  SynthesisRequest request;  // of StartRequest
+  // That of the file with the fields of the flags, except those that are read in a model's joints:
+  // the leader and the follower's start.
+  SynthesisRequest request;
   Client client;
   bool samples = false;  // the model samples
   motion::Skeleton skeleton;
 };
 
-// Checks the files of the flags, the request, with `check`, and its classes, and connects. Errors:
-// the first of these, and those of the server.
+// Checks the files of the flags and the request, with `check`, and connects. Errors: the first of
+// these, and those of the server.
 absl::StatusOr<PreparedCall> PrepareCall(
     const ReactionArguments& arguments, const ServerArguments& server,
     const std::function<absl::Status(const SynthesisRequest&)>& check,

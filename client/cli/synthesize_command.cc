@@ -76,8 +76,6 @@ absl::StatusOr<Paths> WriteAll(const Paths& outputs, const Synthesis& synthesis)
 // Held-out captured leaders rarely exceed this.
 constexpr double kFarUnfamiliarity = 1.5;
 constexpr std::size_t kMaxRunsShown = 5;
-// A pin that is nearer than this is reported as reached.
-constexpr float kReachedMetres = 0.01f;
 
 std::string Milliseconds(absl::Duration duration) {
   return absl::StrFormat("%.0f ms", absl::ToDoubleMilliseconds(duration));
@@ -145,23 +143,6 @@ json GradeJson(const MotionGrade& grade) {
           {"bad_runs", runs}};
 }
 
-std::string DescribePins(const std::vector<JointConstraint>& pins,
-                         const std::vector<float>& metres) {
-  std::vector<std::string> parts;
-  std::size_t reached = 0;
-  for (std::size_t i = 0; i < std::min(pins.size(), metres.size()); ++i) {
-    if (metres[i] < kReachedMetres) {
-      ++reached;
-    } else {
-      parts.push_back(absl::StrFormat("%s in frame %d is %.1f cm away", pins[i].joint,
-                                      pins[i].frame, 100 * double{metres[i]}));
-    }
-  }
-  if (reached > 0) parts.insert(parts.begin(), absl::StrCat(reached, " reached"));
-  if (parts.empty()) return "";
-  return absl::StrCat("          pins: ", absl::StrJoin(parts, ", "), "\n");
-}
-
 json PinsJson(const std::vector<JointConstraint>& pins, const std::vector<float>& metres) {
   json list = json::array();
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -216,7 +197,10 @@ std::string DescribeSynthesis(const Synthesis& synthesis, const Paths& written,
     }
   }
   if (result.grade) text += DescribeGrade(*result.grade);
-  text += DescribePins(synthesis.request.constraints, result.constraint_metres);
+  if (const auto& metres = result.constraint_metres; !metres.empty()) {
+    absl::StrAppendFormat(&text, "          pins: at most %.1f cm away\n",
+                          100 * double{*std::max_element(metres.begin(), metres.end())});
+  }
   if (result.attempt_count > 1) {
     absl::StrAppend(&text, "          ", base::Counted(result.attempt_count, "attempt"), "\n");
   }
