@@ -154,7 +154,7 @@ class ClientServerTest(tools.ServedTest):
         broken = self.folder / "broken.bvh"
         broken.write_text("HIERARCHY\nROOT\n", encoding="utf-8")
         self.refused(42, ["broken.bvh"], broken, "kick=1", out=out)
-        self.refused(42, ["label: class", "dance", "kick, push"], kick, "dance=1", out=out)
+        self.refused(42, ["interaction_class", "dance", "kick, push"], kick, "dance=1", out=out)
         self.refused(42, ["label_vector.weights[1].weight", "[-2, 2]"], kick, "hug=1", "kick=9",
                      out=out)
         self.refused(42, ["leader.frame_rate_hz", "1 to 240"], kick, "kick=1", out=out,
