@@ -31,6 +31,7 @@ import uploads  # noqa: E402
 from aiohttp import web  # noqa: E402
 
 SAMPLES = HERE.parents[1] / "samples"
+MOVES = HERE / "moves"  # more leaders, for Spar
 TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".bvh": "text/plain"}
 
 
@@ -46,10 +47,11 @@ class Gateway:
     def routes(self):
         """Returns {path: {method: handler}}. Only this method reads the page's files, once."""
         about = {"formats": list(conversions.FORMATS),
-                 "samples": sorted(file.stem for file in SAMPLES.glob("*.bvh"))}
+                 "samples": sorted(file.stem for file in SAMPLES.glob("*.bvh")),
+                 "moves": sorted(file.stem for file in MOVES.glob("*.bvh"))}
         files = {"/about.json": ("application/json", json.dumps(about)),
                  "/duet-motion.js": (TYPES[".js"], element.script())}
-        for folder, prefix in ((HERE / "page", "/"), (SAMPLES, "/samples/")):
+        for folder, prefix in ((HERE / "page", "/"), (SAMPLES, "/samples/"), (MOVES, "/samples/")):
             for file in folder.iterdir():
                 if file.suffix in TYPES:
                     files[prefix + file.name] = (TYPES[file.suffix],

@@ -17,7 +17,7 @@ const KEYS = {ArrowUp: 'forward', ArrowDown: 'back', ArrowLeft: 'left', ArrowRig
               w: 'forward', s: 'back', a: 'left', d: 'right'};
 
 const spar = {
-  models: [], samples: [], model: null, body: null, leader: null, choreography: null,
+  models: [], leaders: [], model: null, body: null, leader: null, choreography: null,
   session: null, playback: new Playback(),
   latencies: new Latencies(element('figures')), weights: {}, held: new Set(),
   elapsed: 0,      // seconds since the last frame was sent
@@ -114,7 +114,7 @@ function setWeights(weights, ease = LABEL_SECONDS) {
 function followMove(move) {
   const isOwn = spar.asked && Object.entries(spar.weights).every(
       ([name, weight]) => weight === (name === spar.asked ? 1 : 0));
-  if (move && element('follow').checked) setWeights({[move.label]: 1});
+  if (move && element('follow').checked) setWeights(move.label ? {[move.label]: 1} : {});
   else if (!move && isOwn) setWeights({}, AFTER_MOVE_SECONDS);
   spar.asked = move && element('follow').checked ? move.label : null;
 }
@@ -123,7 +123,7 @@ function followMove(move) {
 
 async function chooseModel(model) {
   const body = new Body(model.joint_names);
-  const {rest, moves} = await movesFor(model, spar.samples, body);
+  const {rest, moves} = await movesFor(model, spar.leaders, body);
   spar.session?.close();
   spar.session = null;
   const leader = new Leader(body, rest);
@@ -204,7 +204,7 @@ function showMoves() {
   moves.forEach((move, i) => {
     element('moves').children[i].setAttribute('aria-pressed', move === current);
   });
-  root.dataset.move = current?.label ?? '';
+  root.dataset.move = current?.leader ?? '';
 }
 
 function throwMove(index) {
@@ -360,7 +360,7 @@ async function start() {
     root.dataset.state = 'failed';
   });
   tellComing();
-  spar.samples = about.samples;
+  spar.leaders = [...about.samples, ...about.moves];
   spar.models = models.filter((model) => model.answers_live);
   if (!spar.models.length) throw new Error('The server has no model that answers live.');
   element('model').replaceChildren(...spar.models.map((model) => new Option(nameOf(model))));

@@ -137,7 +137,7 @@ class SparTest(PageTest):
 
     def test_help_is_about_fingers_on_a_phone(self):
         page = self.open(width=390, height=720)
-        self.assertRegex(page.text("#help"), "^Keys 1 to 6 throw a move")
+        self.assertRegex(page.text("#help"), "^Keys 1 to 8 throw a move")
         page.call("Emulation.setDeviceMetricsOverride", width=390, height=720, deviceScaleFactor=0.5,
                   mobile=True)
         page.call("Emulation.setTouchEmulationEnabled", enabled=True)
@@ -250,10 +250,23 @@ class SparTest(PageTest):
         page = self.open()
         names = page.evaluate("[...element('model').options].map((option) => option.value)")
         self.assertEqual(names, ["everyday@1", "salsa@2", "sbu@3"])
-        for index in (0, 1):  # they have no moves
+        neutral = [["wave", None], ["sit", None]]
+        hands = [["shake_hands", "meet_hands"], ["high_five", "meet_hands"]]
+        for index, moves in enumerate(([*hands, ["pull", "pull"], ["walk", "walk"], *neutral], neutral)):
             page.evaluate(f"chooseModel(spar.models[{index}])")
             page.wait_until("spar.seen")
             self.assertEqual(page.evaluate("spar.session.settings.model"), names[index])
+            self.assertEqual(page.evaluate("spar.choreography.moves.map(({leader, label}) => [leader, label])"),
+                             moves)
+
+    def test_moves_of_the_everyday_model(self):
+        page = self.open("?model=everyday", frozen=True)
+        for key, leader, weights in (("2", "high_five", {"meet_hands": 1}), ("5", "wave", {}),
+                                     ("3", "pull", {"pull": 1})):
+            page.press(key)
+            self.assertEqual((page.state()["move"], self.weights(page)), (leader, weights))
+        self.pass_time(page, 6)
+        self.assertEqual((page.state()["move"], self.weights(page)), ("", {}))
 
     def test_every_control_works_on_a_phone_and_has_a_name(self):
         page = self.open(width=375, height=720, frozen=True)
