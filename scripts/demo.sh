@@ -69,7 +69,7 @@ synthesize() {
 
 # A handshake by the model of everyday interactions, which is free for all uses.
 hands() {
-  duet synthesize --server "${address}" --model everyday --leader samples/shake_hands.bvh --label meet_hands=1 --seed 3 \
+  duet synthesize --server "${address}" --model everyday --leader samples/shake_hands.bvh --label meet_hands=1 \
     --out "${out_dir}/hands.html" --out "${out_dir}/hands.glb"
   echo
 }

@@ -32,7 +32,7 @@ UNCHANGED = 255  # the index of a pixel of a film that is as in the picture befo
 STILL = {"width": 467, "height": 396}
 # (leader, labels, frame of the leader)
 STILLS = (("kick", {"kick": 1}, 34), ("hug", {"hug": 1}, 50), ("push", {"hug": 0.5, "push": 0.5}, 34))
-HANDS = ("shake_hands", ["--model=everyday", "--label=meet_hands=1", "--seed=3"])
+HANDS = ("shake_hands", ["--model=everyday", "--label=meet_hands=1"])
 # The dance of scripts/demo.sh: its sample and its flags.
 DANCE_OF_DEMO = (SOURCE / "scripts" / "demo.sh").read_text(encoding="utf-8").partition("dance() {")[2]
 DANCE = ("salsa", ["--model=salsa", *(f"{flag}={value}" for flag, value in
