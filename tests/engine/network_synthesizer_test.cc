@@ -249,25 +249,13 @@ TEST(NetworkSynthesizer, FollowerWithoutAStartStandsOnTheLeadersFloor) {
   EXPECT_GT(std::abs(LowestFoot(*started) - LowestFoot(window.leader)), 0.1f);
 }
 
-TEST(NetworkSynthesizer, ShareFloorMovesTheFollowerAsAWhole) {
-  const SynthesisWindow window = Window();
-  const WindowResult lifted = RunOne(*Model(LargerAndHigher, {false, true}), window);
-  const WindowResult plain = RunOne(*Model(LargerAndHigher, kAsTheNetworkSays), window);
-  const motion::Vec3 lift = lifted->at(0, 0) - plain->at(0, 0);
-  EXPECT_EQ(lift.x, 0);
-  EXPECT_EQ(lift.z, 0);
-  motion::Poses moved = *plain;
-  for (motion::Vec3& p : moved.all()) p += lift;
-  EXPECT_LT(LargestDistance(moved, *lifted), 1e-5f);
-}
-
 TEST(NetworkSynthesizer, WithoutFeetNoFloorIsShared) {
   ModelDescription footless = FakeDescription();
   footless.skeleton.feet.reset();
   const SynthesisWindow window = Window();
-  const WindowResult got = RunOne(*Model(LargerAndHigher, {false, true}, footless), window);
+  const WindowResult got = RunOne(*Model(LargerAndHigher, true, footless), window);
   ASSERT_THAT(got, IsOk());
-  EXPECT_EQ(*got, *RunOne(*Model(LargerAndHigher, kAsTheNetworkSays), window));
+  EXPECT_GT(LowestFoot(*got) - LowestFoot(window.leader), 0.1f);
 }
 
 TEST(NetworkSynthesizer, OnlyTheWindowThatIsNotFiniteFails) {
