@@ -7,7 +7,6 @@
 
 import argparse
 import csv
-import json
 from pathlib import Path
 
 import numpy as np
@@ -26,24 +25,17 @@ def read_take(folder, name):
     Raises:
         ValueError: not one take has this name, or the data are not in metres with y up.
     """
-    described = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
-    if (described["unit"], described["up_axis"]) != ("metres", "y-up"):
-        raise ValueError(f"--data: expected metres and y-up, got {described['unit']}, {described['up_axis']}")
-    with open(folder / "index.tsv", encoding="utf-8") as file:
-        entries = [row for row in csv.DictReader(file, delimiter="\t")
-                   if name in (row["path"], *row.get("subjects", "").split(","))]
+    described, index = people.read_data(folder)
+    entries = [row for row in index if name in (row["path"], *row.get("subjects", "").split(","))]
     if len(entries) != 1:
         raise ValueError(f"--take: expected the path or the subject of one take, got {name}")
     entry = entries[0]
     names, rate = described["skeleton"]["joint_names"], described["frame_rate_hz"]
-    rows = np.genfromtxt(folder / entry["path"], delimiter=",")[:, 1:1 + 6 * len(names)]
-    pair = rows.reshape(len(rows), 2, len(names), 3)
-    if entry["leader_side"] == "right":
-        pair = pair[:, ::-1]
+    pair = people.read_pair(folder, described, entry)
     with open(folder / "labels.tsv", encoding="utf-8") as file:
         spans = [(row["class"], *(round(float(row[key]) * rate) for key in ("from_seconds", "to_seconds")))
                  for row in csv.DictReader(file, delimiter="\t") if row["path"] == entry["path"]]
-    return *(duet.Motion(pair[:, i], names, rate) for i in range(2)), keyframes(spans, len(rows))
+    return *(duet.Motion(person, names, rate) for person in pair), keyframes(spans, len(pair[0]))
 
 
 def keyframes(spans, frames):

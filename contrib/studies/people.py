@@ -1,9 +1,36 @@
-"""Figures of two people: arrays ``[frames, joints, 3]`` in metres, y up."""
+"""Two people of a data set, and figures of them: arrays ``[frames, joints, 3]`` in metres, y up."""
+
+import csv
+import json
 
 import numpy as np
 
 TURN_DEGREES, TURN_SPEED, MATCH_SECONDS = 230, 45, 1.5
 HOLD_METRES = 0.12
+
+
+def read_data(folder):
+    """A data set's description and the rows of its index (docs/datasets.md).
+
+    Raises:
+        ValueError: the data are not in metres with y up.
+    """
+    described = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
+    if (described["unit"], described["up_axis"]) != ("metres", "y-up"):
+        raise ValueError(f"--data: expected metres and y-up, got {described['unit']}, {described['up_axis']}")
+    with open(folder / "index.tsv", encoding="utf-8") as file:
+        return described, list(csv.DictReader(file, delimiter="\t"))
+
+
+def read_pair(folder, described, entry):
+    """The leader and the follower of a row of the index."""
+    if entry["leader_side"] not in ("left", "right"):
+        raise ValueError(f"index.tsv: leader_side of {entry['path']}: expected left or right, "
+                         f"got {entry['leader_side']}")
+    count = len(described["skeleton"]["joint_names"])
+    rows = np.genfromtxt(folder / entry["path"], delimiter=",")[:, 1:1 + 6 * count]
+    left, right = np.moveaxis(rows.reshape(len(rows), 2, count, 3), 1, 0)
+    return (left, right) if entry["leader_side"] == "left" else (right, left)
 
 
 def joints(names, *endings):
