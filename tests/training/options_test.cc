@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -18,6 +22,18 @@ TEST(TrainingOptionsTest, EveryNamedConfigurationParses) {
   ASSERT_FALSE(NamedConfigs().empty());
   for (const NamedConfig& config : NamedConfigs()) {
     EXPECT_THAT(ParseConfig(config.json), IsOk()) << config.name;
+  }
+}
+
+TEST(TrainingOptionsTest, ConfigurationsBesideDataSetsParse) {
+  const char* source = std::getenv("DUET_SOURCE_DIR");
+  ASSERT_NE(source, nullptr) << "DUET_SOURCE_DIR is not set";
+  for (const char* data : {"everyday", "salsa"}) {
+    for (const char* run : {"first", "second", "third"}) {
+      const auto file = std::filesystem::path(source) / "contrib" / data / "configs" / run;
+      std::ifstream in(file.string() + ".json");
+      EXPECT_THAT(ParseConfig(std::string(std::istreambuf_iterator<char>(in), {})), IsOk()) << file;
+    }
   }
 }
 
