@@ -103,8 +103,9 @@ FlowNetwork::Work FlowNetwork::Prepare(absl::Span<const engine::NetworkInput> in
   work.modulation = scratch->Take<float>(terms * 4 * width_);
   work.frames = scratch->Take<float>(term_rows * width_);
   work.normal = scratch->Take<float>(term_rows * width_);
-  work.branch =
-      scratch->Take<float>(term_rows * std::max<std::ptrdiff_t>(3 * width_, flow_.feed_forward));
+  // Queries, keys and values; the hidden layer; the answer.
+  work.branch = scratch->Take<float>(
+      term_rows * std::max<std::ptrdiff_t>({3 * width_, flow_.feed_forward, pose_}));
   work.distance = scratch->Take<float>(std::ptrdiff_t{heads_} * (2 * work.longest - 1));
   work.attention =
       scratch->Take<float>(kernels::SelfAttentionScratch(work.longest, width_ / heads_));
