@@ -33,7 +33,9 @@ class Scratch {
     template <typename T>
     T* Take(std::ptrdiff_t count) {
       static_assert(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment);
-      const std::size_t size = static_cast<std::size_t>(count) * sizeof(T);
+      // Whole vectors: kernels write them to the end of the last one.
+      const std::size_t size =
+          (static_cast<std::size_t>(count) * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
       taken_ += size + kAlignment;
       return static_cast<T*>(memory_.allocate(size, kAlignment));
     }
