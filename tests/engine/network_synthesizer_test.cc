@@ -69,7 +69,7 @@ NetworkInput SeenByTheNetwork(const SynthesisWindow& window, motion::StandardOri
         seen = inputs[0];
         return LargerAndHigher(inputs);
       },
-      {}, FakeDescription(), origin);
+      true, FakeDescription(), origin);
   EXPECT_THAT(RunOne(*model, window), IsOk());
   return seen;
 }
@@ -177,7 +177,7 @@ TEST(NetworkSynthesizer, LimbsWithoutAPoseHaveTheModelsRatiosToThoseOfTheLeader)
   ModelDescription description = test::FakeDescription();
   description.bone_ratios.assign(skeleton.bones.size(), 0.9);
   description.bone_ratios.back() = 1.1;
-  const auto model = Model(LargerAndHigher, {}, description);
+  const auto model = Model(LargerAndHigher, true, description);
   SynthesisWindow window = Window();
   const auto expect = [&](const motion::Poses& owner, float ratio, float last) {
     const WindowResult result = RunOne(*model, window);
@@ -212,7 +212,7 @@ float AwayAtTheEnd(const std::vector<FacingClass>& facing, std::vector<float> we
     return RotateY(joint, 150 * base::kRadiansPerDegree) + motion::Vec3{0, 0, -1};
   });
   const auto model =
-      Model([&](Inputs inputs) { return std::vector<motion::Poses>(inputs.size(), away); }, {},
+      Model([&](Inputs inputs) { return std::vector<motion::Poses>(inputs.size(), away); }, true,
             description);
   const WindowResult result = RunOne(*model, window);
   if (!result.ok()) return 0;
@@ -340,7 +340,7 @@ TEST(FinishMotions, PassTheStagesOfAnAnswer) {
       return std::vector<motion::Poses>{
           WindowStandardisation(description.skeleton, windows[i]).Apply(followers[i])};
     };
-    const auto model = Model(says, {}, description);
+    const auto model = Model(says, true, description);
     const WindowResult answer = model->Synthesize({&windows[i]}).front();
     ASSERT_THAT(answer, IsOk());
     ASSERT_EQ(answer->all().size(), finished[i]->all().size());
