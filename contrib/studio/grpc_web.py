@@ -3,6 +3,7 @@ messages pass through unchanged; gRPC-web sends the trailers as the last frame o
 
 import asyncio
 import base64
+import contextlib
 import os
 import re
 import typing
@@ -26,6 +27,7 @@ PRINTABLE = re.compile(r"[ -~]*")
 TIMEOUT = re.compile(r"([0-9]{1,8})([HMSmun])")
 SECONDS = {"H": 3600, "M": 60, "S": 1, "m": 1e-3, "u": 1e-6, "n": 1e-9}
 LONGEST_SECONDS = 600  # of a call
+RECONNECT_SECONDS = 2  # longer than a channel of duet_motion waits between attempts to connect
 DETAILS = "grpc-status-details-bin"  # of an error that a Duet server reports
 
 
@@ -45,6 +47,16 @@ def connect(server, tls):
     return Backend(server, grpc.aio.secure_channel(target, credentials, arguments))
 
 
+async def reconnected(channel):
+    """If the connection is lost, waits for the next attempt to connect, or until it is clear that the server
+    is away. Until that attempt gRPC refuses calls, even if the server is back."""
+    async def leave_failure():
+        while channel.get_state(try_to_connect=True) is grpc.ChannelConnectivity.TRANSIENT_FAILURE:
+            await channel.wait_for_state_change(grpc.ChannelConnectivity.TRANSIENT_FAILURE)
+    with contextlib.suppress(asyncio.TimeoutError):
+        await asyncio.wait_for(leave_failure(), RECONNECT_SECONDS)
+
+
 async def forward(request, backend, uploads):
     """Forwards a browser's call to the server and its reply to the browser, message by message."""
     if request.content_type not in CONTENT_TYPES:
@@ -59,6 +71,7 @@ async def forward(request, backend, uploads):
         async with uploads.message(request) as body:
             refused = why_refused(body.read(FRAME_BYTES), body)
             if refused is None:
+                await reconnected(backend.channel)
                 # A stream of one message is the same on the wire as a unary request, but its memory
                 # is freed once it has been sent instead of at the call's end.
                 call = backend.channel.stream_stream(request.path)(timeout=seconds, metadata=metadata)

@@ -1,5 +1,6 @@
 """The gateway of contrib/studio under hostile and faulty requests, against a real server."""
 
+import concurrent.futures
 import contextlib
 import glob
 import json
@@ -391,10 +392,16 @@ class GatewayTest(gateways.GatewayTest):
             self.assertIn(b"grpc-status: 14\r\n", self.call("ListModels", b"", gateway))
         finally:
             server.stop()
-        server = tools.Server(port=port)
-        self.addCleanup(server.stop)
-        tools.wait_until(lambda: b"grpc-status: 0\r\n" in self.call("ListModels", b"", gateway),
-                         "calls to be answered again")
+
+    def test_call_waits_for_the_connection_to_a_server_that_is_back(self):
+        port = tools.free_port()
+        gateway = Gateway(f"127.0.0.1:{port}", bounds=f"grpc_web.RECONNECT_SECONDS = {tools.RUN_SECONDS}")
+        self.addCleanup(gateway.stop)
+        self.assertIn(b"grpc-status: 14\r\n", self.call("ListModels", b"", gateway))
+        with concurrent.futures.ThreadPoolExecutor() as callers:
+            answer = callers.submit(self.call, "ListModels", b"", gateway)
+            self.addCleanup(tools.Server(port=port).stop)
+            self.assertIn(b"grpc-status: 0\r\n", answer.result())
 
     def test_many_visitors_at_once_are_all_answered(self):
         self.gateway.send(signal.SIGSTOP)  # so that all of them wait to be accepted

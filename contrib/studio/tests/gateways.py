@@ -44,7 +44,7 @@ class Gateway:
 
     def __init__(self, server, *flags, bounds=""):
         program = (f"import sys; sys.path.insert(0, {str(WEB)!r})\n"
-                   f"import gateway, serving, uploads, conversions, live_socket\n"
+                   f"import gateway, grpc_web, serving, uploads, conversions, live_socket\n"
                    f"{SANITIZED_BOUNDS}\n{bounds}\n"
                    "sys.exit(gateway.main(sys.argv[1:]))")
         self.log = []

@@ -66,8 +66,13 @@ class StudioAwayTest(unittest.TestCase):
         page.wait_until(FAILED)
         self.assertRegex(page.text("#status"), r"^The server at 127\.0\.0\.1:\d+ (is not running|closed the connection): ")
         self.serve()
+        # The gateway waits for its connection, but on a busy machine not for long enough.
+        tools.wait_until(lambda: self.is_answered(page), "an answer after the server's return")
+
+    def is_answered(self, page):
         page.evaluate("element('react').click()")
-        page.wait_until(ANSWERED)
+        page.wait_until(f"{FAILED} || {ANSWERED}")
+        return page.evaluate(ANSWERED)
 
     def test_gateway_that_is_away_is_named(self):
         self.serve()
